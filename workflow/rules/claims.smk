@@ -4,10 +4,7 @@
 
 rule claims:
     input:
-        runs=read(of(jobs.claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        judgements=read(of(jobs.claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
-        problems=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.claims))),
         sources=sources(of(jobs.claims)),
     output:
         claims=report(
@@ -35,8 +32,7 @@ rule claims:
 
 rule audit:
     input:
-        problems=read(of(jobs.audit), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.audit), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.audit))),
         sources=sources(of(jobs.audit)),
     output:
         report(
@@ -58,8 +54,7 @@ rule audit:
 # How well each reading of a paper fits its printed numbers.
 rule readings_of_study:
     input:
-        problems=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.readings))),
         sources=sources(of(jobs.readings)),
     output:
         f"{RESULTS}/readings.csv",

@@ -144,24 +144,38 @@ def of(make, **more):
     return lambda wildcards: made(make, tuple(more.items()), tuple(sorted(wildcards.items())))
 
 
-def read(job, pattern):
-    """Files of the results that a job reads: one for each experiment, each of its methods, or each
-    chunk of runs, of which a job knows the number.
+KINDS = {
+    "runs": f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+    "times": f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
+    "traces": f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.traces.parquet",
+    "judgements": f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
+    "problems": f"{RESULTS}/problems/{{experiment}}.parquet",
+    "bounds": f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
+}
+"""Results by kind: files of each experiment, each of its methods, or each chunk of runs."""
+
+
+def results(job, *kinds):
+    """Files of the results that a job reads, of all kinds or some: it knows the experiments, their
+    methods, and the number of chunks. Only drives have traces.
     """
+    return lambda wildcards: {kind: files_read(job, kind, wildcards) for kind in kinds or KINDS}
 
-    def files(wildcards):
-        found = []
-        for name, methods in job(wildcards).shows.items():
-            study, _, experiment = name.rpartition("/")
-            places = {"scale": wildcards.scale, "study": study or wildcards.study}
-            places["experiment"] = experiment
-            chunks = [(method, n) for method in methods for n in range(methods[method])]
-            files = (pattern.format(**places, method=method, chunk=n) for method, n in chunks)
-            # Problems have no methods.
-            found += dict.fromkeys(files if "{method}" in pattern else [pattern.format(**places)])
-        return found
 
-    return files
+def files_read(job, kind, wildcards):
+    """Those of one kind."""
+    found = []
+    for name, methods in job(wildcards).shows.items():
+        study, _, experiment = name.rpartition("/")
+        study = study or wildcards.study
+        if kind == "traces" and not STUDIES[study].moves(experiment):
+            continue
+        place = {"scale": wildcards.scale, "study": study, "experiment": experiment}
+        chunks = [(method, n) for method in methods for n in range(methods[method])]
+        # Problems have no methods.
+        of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
+        found += [KINDS[kind].format(**place, method=method, chunk=n) for method, n in of_runs]
+    return [*dict.fromkeys(found)]
 
 
 def sources(job):
@@ -228,8 +242,10 @@ def shown(wildcards):
     ]
 
 
-def judged(file):
-    """Files of the runs that the page shows, and of the baselines that the summary is about."""
+def judged(wildcards):
+    """Files of the results that the page shows, and of those that the summary compares with the
+    baseline.
+    """
     makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
-    reads = [read(make, f"{RESULTS}/runs/{{experiment}}/{{method}}/{file}") for make in makes]
-    return lambda wildcards: [*dict.fromkeys(name for each in reads for name in each(wildcards))]
+    parts = [results(job)(wildcards) for job in makes]
+    return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}

@@ -4,10 +4,7 @@
 
 rule figure:
     input:
-        runs=read(of(jobs.figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        judgements=read(of(jobs.figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
-        problems=read(of(jobs.figure), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.figure), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.figure))),
         sources=sources(of(jobs.figure)),
     output:
         svg=report(
@@ -26,9 +23,6 @@ rule figure:
         study=studies_with(DRAWN),
     conda:
         "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(1500),
-        runtime=more(5),
     params:
         **params(jobs.figure),
         caption=caption,

@@ -17,9 +17,6 @@ rule problems:
     priority: 4
     conda:
         "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(1500),
-        runtime=more(5),
     params:
         **params(jobs.problems),
     script:
@@ -39,7 +36,6 @@ rule bounds:
     conda:
         "../envs/bezierplan.yaml"
     resources:
-        mem_mb=more(1500),
         runtime=more(10),
     params:
         **params(jobs.bounds),
@@ -63,7 +59,6 @@ rule runs:
     conda:
         "../envs/bezierplan.yaml"
     resources:
-        mem_mb=more(1500),
         runtime=more(20),
     params:
         **params(jobs.runs),
@@ -84,8 +79,7 @@ use rule runs as drives with:
 # Nothing reads runs that were not judged again from their rows, in a process that no planner was in.
 rule judgement:
     input:
-        runs=read(of(jobs.judgement), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        problems=read(of(jobs.judgement), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        unpack(results(of(jobs.judgement), "runs", "problems")),
     output:
         f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
     log:
@@ -94,7 +88,6 @@ rule judgement:
     conda:
         "../envs/bezierplan.yaml"
     resources:
-        mem_mb=more(1500),
         runtime=more(10),
     params:
         **params(jobs.judgement),

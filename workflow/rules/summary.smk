@@ -3,18 +3,7 @@
 
 rule baseline_comparison:
     input:
-        runs=read(
-            of(jobs.baseline_comparison),
-            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
-        ),
-        judgements=read(
-            of(jobs.baseline_comparison),
-            f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
-        ),
-        problems=read(of(jobs.baseline_comparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(
-            of(jobs.baseline_comparison), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
-        ),
+        unpack(results(of(jobs.baseline_comparison))),
     output:
         report(
             "results/{scale}/baseline_comparison.csv",
@@ -105,12 +94,7 @@ SUMMARY = expand(
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
-        runs=judged("{chunk}.parquet"),
-        judgements=judged("judgement.json"),
-        problems=read(of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(
-            of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
-        ),
+        unpack(judged),
         shown=shown,
         summary=SUMMARY,
         readings=lambda wildcards: of_readings(wildcards.scale, READ),
@@ -128,12 +112,7 @@ rule verified:
 
 rule page:
     input:
-        runs=read(
-            of(page.page, root=PREFIX),
-            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
-        ),
-        problems=read(of(page.page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(page.page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(page.page, root=PREFIX))),
         shown=shown,
         summary=SUMMARY,
         # Last, for it is of all these files.

@@ -4,14 +4,7 @@
 
 rule table:
     input:
-        runs=read(
-            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
-        ),
-        judgements=read(
-            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
-        ),
-        problems=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.table_of_runs))),
         sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(
@@ -34,9 +27,6 @@ rule table:
         study=studies_with(PRINTED),
     conda:
         "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(1500),
-        runtime=more(5),
     params:
         **params(jobs.table_of_runs),
         caption=caption,
@@ -47,14 +37,7 @@ rule table:
 # Of numbers that no paper prints, or of more than it prints.
 use rule table as unprinted_table with:
     input:
-        runs=read(
-            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
-        ),
-        judgements=read(
-            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
-        ),
-        problems=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        unpack(results(of(jobs.table_of_runs))),
         sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(
@@ -85,9 +68,6 @@ rule listing:
         study=studies_with(LISTED),
     conda:
         "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(1500),
-        runtime=more(5),
     params:
         **params(jobs.table_without_runs),
         caption=caption,

@@ -398,16 +398,12 @@ class Verification(Job):
         verdict = recheck.merged(
             recheck.Verdict(**each | {"digests": tuple(each["digests"])}) for each in judgements
         )
-        # The times and traces of a chunk lie beside it.
-        beside = [
-            file for run in map(Path, input_files.runs) for file in run.parent.glob(f"{run.stem}.*")
-        ]
         content = recheck.sound(verdict) | {
             "digest": verdict.digest,
             "versions": recheck.versions(),
             "sha256": {
                 str(file.relative_to(self.folder)): recheck.sha256(file)
-                for file in sorted({*map(Path, input_files), *beside})
+                for file in sorted({*map(Path, input_files)})
             },
         }
         recheck.write(content, output_files[0])

@@ -64,8 +64,10 @@ def write(table: pa.Table, file: str) -> None:
 
 def read(file: str, threads: bool = True) -> pa.Table:
     """The table of a Parquet file; without pyarrow's threads this process can be forked. Raises
-    ValueError, naming it, unless it is a whole one.
+    ValueError, naming it, unless it is there and whole.
     """
+    if not Path(file).is_file():
+        raise ValueError(f"{file}: is not there; start again: the workflow makes it")
     try:
         content = pa.BufferReader(Path(file).read_bytes())
         with parquet.ParquetFile(content, pre_buffer=False) as source:
