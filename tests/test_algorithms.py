@@ -21,7 +21,10 @@ CASES = {
     ),
     ("elhoseny2017", "fields100"): (
         ["case1_100_0_25", "case2_100_dense_1_15"],
-        [{"population": 10, "iterations": 10}, {"population": 16, "iterations": 4, "eta": 0.5}],
+        [
+            {"population": 10, "iterations": 10},
+            {"population": 16, "iterations": 4, "eta": 0.5, "mutation_rate": 0.05},
+        ],
     ),
     ("tharwat2018", "maps"): (
         ["equal", "public"],

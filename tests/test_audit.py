@@ -143,7 +143,7 @@ def ranks(*texts, **layout):
     return audited(*((str(k), "rank", "mean", text) for k, text in enumerate(texts)), **layout)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(st.integers(2, 8), st.integers(1, 12), st.randoms(use_true_random=False))
 def test_ranks_of_real_data_pass(methods, units, random):
     values = np.array([[random.randint(0, 9) for _ in range(methods)] for _ in range(units)])

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from studies import planned
 
@@ -52,7 +52,6 @@ def reference(path, grid, samples):
     st.sampled_from(["length", "repaired", "literal_weights", "hard_safety"]),
     st.sampled_from([0.25, 1.0, 1.6]),
 )
-@settings(max_examples=60)
 def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
     grid = random_grid(seed)
     found = plan(grid, seed=seed, fitness=fitness, safety_distance=distance, generations=4)
@@ -78,7 +77,6 @@ def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
     st.sampled_from(["reciprocal_literal", "as_printed"]),
     st.sampled_from(["collision_free", "clearance"]),
 )
-@settings(max_examples=40)
 def test_cost_of_the_literal_forms(seed, fitness, feasible):
     grid = random_grid(seed, 0.05)
     found = plan(grid, seed=seed, fitness=fitness, fitness_feasible=feasible, generations=4)
@@ -101,7 +99,6 @@ def test_as_printed_prefers_long_paths():
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=60)
 def test_a_claimed_path_has_no_sample_inside_an_obstacle_however_fine(seed):
     grid = random_grid(seed)
     found = plan(grid, seed=seed, initial="feasible", generations=6)

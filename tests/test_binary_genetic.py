@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from studies import planned, study
 
@@ -54,7 +54,6 @@ def entries(points, grid):
 
 
 @given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
-@settings(max_examples=40)
 def test_objective_is_length_plus_penalty_for_each_entry_into_an_occupied_cell(seed, curve):
     grid, samples = random_grid(seed), SAMPLES[curve]
     found = plan(
@@ -83,12 +82,12 @@ def test_a_cell_is_entered_once_however_fine_the_samples():
         assert found.extra["bad_samples"] > 1
 
 
-@given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
-@settings(max_examples=40)
-def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
-    grid = random_grid(seed)
-    found = plan(grid, seed=seed, curve=curve, samples=SAMPLES[curve], generations=3)
-    length, bad = reference(found.path, grid, SAMPLES[curve])
+@given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES), st.booleans())
+def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve, odd):
+    """Also of samples that the pieces of a curve do not divide."""
+    grid, samples = random_grid(seed), SAMPLES[curve] - 7 * odd
+    found = plan(grid, seed=seed, curve=curve, samples=samples, generations=3)
+    length, bad = reference(found.path, grid, samples)
     assert found.objective == pytest.approx(length + 10 * bad, rel=1e-12)
     assert found.extra["bad_samples"] == bad
     assert found.claimed_feasible == (bad == 0)
@@ -105,18 +104,6 @@ def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
     plain = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
     assert np.array_equal(compiled.history, plain.history)
     assert np.array_equal(compiled.path.points, plain.path.points)
-
-
-def test_stretches_of_quadratic_pieces_depend_on_three_control_points():
-    found = binary_genetic.stretches(curves.sample_matrix("piecewise_quadratic", 8, 601))
-    assert found.tolist() == [[i, i + 2, 100 * i, 100 * i + 100] for i in range(6)]
-
-
-def test_stretches_cover_all_samples_where_pieces_do_not_divide_them():
-    found = binary_genetic.stretches(curves.sample_matrix("piecewise_quadratic", 8, 101))
-    assert found[0, 2] == 0
-    assert found[-1, 3] == 100
-    assert np.array_equal(found[1:, 2], found[:-1, 3])
 
 
 @pytest.mark.parametrize("penalty", [0.0, 10.0])

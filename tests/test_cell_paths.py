@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -85,7 +85,6 @@ def joined_list(places, cells, longest):
 
 
 @given(seeds, st.sampled_from(["one", "none"]), st.integers(10, 60))
-@settings(max_examples=100)
 def test_cells_are_joined_as_a_list_that_grows_in_its_middle(seed, corners, longest):
     grid, rng = random_grid(seed), np.random.default_rng(seed)
     places, marks = places_of(grid, corners), marks_of(places_of(grid))
@@ -103,7 +102,6 @@ def test_cells_are_joined_as_a_list_that_grows_in_its_middle(seed, corners, long
 
 
 @given(seeds)
-@settings(max_examples=50)
 def test_loops_are_cut_and_nothing_else(seed):
     places = places_of(random_grid(seed))
     path, marks = random_walk(np.random.default_rng(seed), places, 40), marks_of(places)
@@ -118,7 +116,6 @@ def test_loops_are_cut_and_nothing_else(seed):
 
 
 @given(seeds)
-@settings(max_examples=50)
 def test_length_is_that_of_the_polyline_with_its_ends(seed):
     grid = random_grid(seed)
     start, target = (0.1, 0.2), (8.9, 6.3)
@@ -185,7 +182,6 @@ def test_paths_of_three_cells_are_left_alone():
 
 
 @given(seeds)
-@settings(max_examples=50)
 def test_a_reconnected_part_is_a_path_by_way_of_the_bounding_box(seed):
     places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
     first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)
@@ -197,7 +193,6 @@ def test_a_reconnected_part_is_a_path_by_way_of_the_bounding_box(seed):
 
 
 @given(seeds, st.integers(0, 8))
-@settings(max_examples=50)
 def test_a_walk_meets_its_end_without_a_cell_twice(seed, tries):
     places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
     first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)

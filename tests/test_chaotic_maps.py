@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
@@ -82,7 +82,6 @@ def test_gauss_does_not_stay_below_seven_tenths():
 
 
 @given(st.sampled_from(CHAOTIC), st.floats(0, 1), st.floats(0.9, 1.08))
-@settings(max_examples=200)
 def test_every_value_lies_from_0_to_1_whatever_the_start(name, start, mu):
     values = sequence(name, start, 100, mu).values
     assert ((values >= 0) & (values <= 1)).all()

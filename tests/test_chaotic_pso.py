@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from fields import among_circles as problem
 from hypothesis import given
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 from studies import planned, study
 
@@ -27,7 +26,6 @@ SETTINGS = study("tharwat2018").resolved("pso") | {
 
 EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
-OPEN = problem([])
 
 
 def plan(where=EQUAL, seed=0, **changes):
@@ -185,62 +183,6 @@ def test_search_is_that_of_a_plain_reference(changes):
     assert found.stop == ("iterations" if len(history) == changes["iterations"] + 1 else "stall")
 
 
-UNUSED = np.random.default_rng(0)
-
-
-def swarm(where, x):
-    """The swarm of no iterations that starts at x (particles, 6)."""
-    field, rules = (
-        np.full(6, 10.0),
-        filled(chaotic_pso.Settings, SETTINGS | {"stall_limit": 10, "chaotic_term": "none"}),
-    )
-    objective = chaotic_pso._objective(where, rules)
-    return chaotic_pso.Swarm(
-        *chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules),
-        0,
-        0,
-    )
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "where", "expected"),
-    [
-        ([1, 2, 3], [1.5, 3, 4.5], OPEN, 7.211103),
-        ([1, 2, 3], [1.5, 3, 4.5], PUBLIC, 95.050708),
-        ([1, 2, 3], [1.5, 3, 4.5], EQUAL, 118.766232),
-        ([-4, -2, 2], [2, 8, 8], EQUAL, 12.543342),
-        ([0.7197, -0.1836, 2.2284], [2.1662, 2.8501, 1.1334], PUBLIC, 7.518209),
-        ([0.7197, -0.1836, 2.2284], [2.1662, 2.8501, 1.1334], EQUAL, 113.744577),
-        ([10, 10, 10], [-10, -10, -10], EQUAL, 32.359578),
-    ],
-)
-def test_fitness_of_known_paths(x, y, where, expected):
-    assert swarm(where, np.array([[*x, *y]], dtype=float)).fitness[-1] == pytest.approx(
-        expected, abs=1e-6
-    )
-
-
-@pytest.mark.parametrize(
-    ("where", "violation", "colliding"), [(PUBLIC, 0.12181162, 45), (EQUAL, 0.15469913, 33)]
-)
-def test_violation_and_colliding_samples_of_the_straight_line(where, violation, colliding):
-    found = swarm(where, np.array([[1, 2, 3, 1.5, 3, 4.5]]))
-    assert found.violation == pytest.approx(violation, abs=1e-8)
-    assert found.colliding_samples == colliding
-
-
-@pytest.mark.parametrize(
-    ("where", "mean", "error"),
-    [(EQUAL, 15.232, 0.12), (PUBLIC, 14.263, 0.09)],
-    ids=["equal", "public"],
-)
-def test_mean_of_20_000_frozen_swarms(where, mean, error):
-    x = np.random.default_rng(1).uniform(-10, 10, (20_000, 20, 6))
-    assert np.mean([swarm(where, positions).fitness[-1] for positions in x]) == pytest.approx(
-        mean, abs=error
-    )
-
-
 @pytest.mark.parametrize(
     ("changes", "mean"),
     [
@@ -384,7 +326,6 @@ def test_polygons_grow_by_the_safety_distance():
 
 
 @given(st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=20))
-@hypothesis_settings(max_examples=50, deadline=None)
 def test_a_polygon_with_many_corners_is_like_the_circle_around_it(points):
     angles = np.linspace(0, math.tau, 721)[:-1]
     x, y = np.array(points).T

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.integrate import quad
@@ -60,13 +60,11 @@ def test_ferguson_curve_is_the_hermite_spline_of_its_points_and_tangents():
 
 
 @given(paths())
-@settings(max_examples=50)
 def test_ends_are_exact(path):
     assert np.array_equal(sampled(path)[[0, -1]], path.points[list(curves.ends(path.curve))])
 
 
 @given(paths())
-@settings(max_examples=50)
 def test_length_lies_between_straight_line_and_control_polygons(path):
     pieces = curves.bezier_pieces(path)
     polygons = np.hypot(*np.moveaxis(np.diff(pieces, axis=1), 2, 0)).sum()
@@ -89,7 +87,6 @@ def transformed(path, turn, shift, backwards):
 
 
 @given(paths(), st.floats(0, 2 * math.pi), st.tuples(coordinates, coordinates), st.booleans())
-@settings(max_examples=50)
 def test_length_does_not_change_when_a_path_is_moved_or_reversed(path, angle, shift, backwards):
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     other = transformed(path, turn, shift, backwards)

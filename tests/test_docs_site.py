@@ -186,17 +186,16 @@ def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
             for words in clicks:
                 tab.locator("main").get_by_role("link", name=words, exact=True).first.click()
             expect(tab.locator("main").get_by_text(answer).first).to_be_visible()
-    for question, page in SEARCHES.items():
+    # A search does not ask how wide the window is.
+    for question, page in SEARCHES.items() if tab.viewport_size["width"] == WIDTHS[0] else ():
         with subtests.test(question=question):
             tab.goto(f"/search.html?q={question}")
             first = tab.locator("#search-results li a").first
             expect(first).to_have_attribute("href", re.compile(f"^{page}(#.*)?$"))
 
 
-PAGES = [
-    *("index", "use", "gallery", "cite", "verdicts", "papers/song2016"),
-    *("methods/ant_colony", "methods/index"),
-]
+# Of each template one.
+PAGES = ["index", "use", "gallery", "papers/song2016", "methods/ant_colony"]
 
 
 @needs_browser

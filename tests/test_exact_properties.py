@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapely
 from fields import BENCHMARK_MAPS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -178,7 +178,7 @@ def test_random_paths_against_dense_sampling(curve, kind):
     rng = np.random.default_rng([CURVES.index(curve), KINDS.index(kind)])
     for workspace in random_workspaces(kind, rng):
         blocked, judge = region(workspace), Judge(workspace)
-        for _ in range(85):
+        for _ in range(40):
             pieces = bezier_pieces(random_path(rng, curve, workspace.bounds[:2]))
             assert_check_is_right(workspace, pieces, blocked, judge)
 
@@ -282,7 +282,6 @@ def paths(draw):
     return bezier_pieces(Path(curve, np.array(points)))
 
 
-@settings(deadline=None, max_examples=300)
 @given(WORKSPACES, paths())
 def test_touching_paths_against_dense_sampling(workspace, pieces):
     """On a lattice paths begin, end, turn and run on the boundaries of obstacles all the time."""
@@ -331,7 +330,6 @@ def pieces_along(bound):
     return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
 
 
-@settings(deadline=None, max_examples=150)
 @given(PROBLEMS)
 def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
     bound = shortest_path(problem)
@@ -346,7 +344,6 @@ def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
         assert check(pieces_along(bound), blocked).feasible
 
 
-@settings(deadline=None, max_examples=100)
 @given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]))
 def test_mirroring(problem, pieces, flip):
     mirrored = Problem(
@@ -359,7 +356,6 @@ def test_mirroring(problem, pieces, flip):
     assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace)), found)
 
 
-@settings(deadline=None, max_examples=60)
 @given(
     st.builds(
         Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE
@@ -384,7 +380,6 @@ def assert_same_check(a, b):
     assert a.clearance == pytest.approx(b.clearance, abs=2e-9)
 
 
-@settings(deadline=None, max_examples=80)
 @given(grid_workspaces(), PLACE, PLACE, paths())
 def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     row, column = np.nonzero(grid.occupied)
@@ -404,7 +399,6 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     )
 
 
-@settings(deadline=None, max_examples=80)
 @given(PROBLEMS, st.tuples(LATTICE, LATTICE))
 def test_a_larger_obstacle_makes_no_path_shorter(problem, place):
     workspace = problem.workspace
@@ -435,7 +429,6 @@ def regular(circle, corners, shape):
     return np.array([x, y]) + reach * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-@settings(deadline=None, max_examples=40)
 @given(circle_workspaces(), PLACE, PLACE)
 def test_circles_lie_between_polygons_inside_and_around_them(circles, start, target):
     table = np.column_stack([circles.centres, circles.radii])
@@ -468,7 +461,6 @@ def split(piece, t):
     return np.array([left, right[::-1]])
 
 
-@settings(deadline=None, max_examples=150)
 @given(
     WORKSPACES,
     paths(),
@@ -491,7 +483,6 @@ def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces,
     assert reverse.clearance == pytest.approx(found.clearance, abs=2e-9)
 
 
-@settings(deadline=None, max_examples=80)
 @given(
     grid_workspaces(),
     st.tuples(st.integers(0, SIZE - 1), st.integers(0, SIZE - 1)),

@@ -1,7 +1,7 @@
 """Genetic operators: distributions against their formulas, and what no operator may do."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -24,7 +24,6 @@ def bits_of(chromosome):
 
 
 @given(chromosomes, chromosomes, st.integers(1, 6 * BITS - 1))
-@settings(max_examples=100)
 def test_crossover_swaps_exactly_the_bits_behind_the_cut(one, other, cut):
     a, b = bits_of(one), bits_of(other)
     swap_tails(one, other, cut, BITS)
@@ -33,7 +32,6 @@ def test_crossover_swaps_exactly_the_bits_behind_the_cut(one, other, cut):
 
 
 @given(chromosomes, st.integers(0, 6 * BITS - 1))
-@settings(max_examples=100)
 def test_mutation_complements_exactly_one_bit(chromosome, position):
     before = bits_of(chromosome)
     complement_bit(chromosome, position, BITS)

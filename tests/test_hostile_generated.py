@@ -7,7 +7,7 @@ Each is read, or ends in one line that names its file; nothing else may happen.
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.schema import checked, model
@@ -95,7 +95,6 @@ def one_line(caught, name):
 def test_spoilt_file_of_a_study(name):
     text = (STUDIES / "song2016" / f"{name}.yaml").read_text()
 
-    @settings(max_examples=60)
     @given(spoilt(text, WORDS))
     def told(content):
         try:
@@ -117,7 +116,6 @@ def test_spoilt_map(source, kind, tmp_path):
     text, file = (STUDIES / source).read_text(), tmp_path / Path(source).name
     words = JSON_WORDS if file.suffix == ".geojson" else WORDS
 
-    @settings(max_examples=60)
     @given(spoilt(text, words))
     def told(content):
         file.write_text(content, encoding="utf-8", newline="")

@@ -1,14 +1,12 @@
-"""Jobs of the workflow: what they are made of, what they do when called as functions, names of
-studies and targets, and what the small subset holds.
+"""Jobs of the workflow: what they are made of, names of studies and targets, and what the small
+subset holds.
 """
 
-import contextlib
 import os
 import re
 from pathlib import Path
 from types import SimpleNamespace
 
-import pandas as pd
 import pytest
 from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
@@ -190,61 +188,3 @@ def test_the_small_subset_holds_every_scenario(scenario):
         ):
             return
     raise AssertionError("no experiment of smoke has it")
-
-
-# Jobs as functions: they know the files of an experiment by their order, wherever these lie.
-
-
-@pytest.fixture(scope="module")
-def gathering():
-    with pytest.MonkeyPatch.context() as patch:
-        import gathering
-
-        patch.setattr(gathering, "MADE", 4)
-        yield gathering
-
-
-@pytest.fixture(scope="module")
-def many(gathering, tmp_path_factory):
-    """A working folder with a study, `many`, of four runs of each method, and what its jobs
-    make.
-    """
-    folder = tmp_path_factory.mktemp("jobs")
-    with contextlib.chdir(folder):
-        own = reading.read_study(gathering.write_study(folder / "many", 4, 2))
-        gathering.write_runs(own)
-        for job, given, made in gathering.gathering({"many": own}):
-            for file in made.values():
-                Path(file).parent.mkdir(parents=True, exist_ok=True)
-            output = OutputFiles(fromdict=made)
-            job.run(gathering.input_files(given), output, 1)
-    return folder / "results/full"
-
-
-def test_methods_are_measured_against_the_baseline(many):
-    rows = pd.read_csv(many / "baseline_comparison.csv")
-    assert set(rows["method"]) == {"pso", "cpso1_singer", "cpso2_singer", "ferguson"}
-    assert (rows["length"].dropna() >= 1 - 1e-9).all(), "none is shorter than the shortest path"
-
-
-def test_claims_are_judged_and_a_table_stands_beside_the_printed_one(many):
-    assert pd.read_csv(many / "many/claims.csv")["id"].tolist() == ["C1"]
-    assert set(pd.read_csv(many / "many/claim_checks.csv")["test"]) == {"lower"}
-    ours, printed = (
-        pd.read_csv(many / f"many/beyond/lengths{part}.csv") for part in ("", ".published")
-    )
-    assert list(ours) == list(printed)
-    assert list(ours["method"]) == list(printed["method"])
-
-
-@pytest.mark.parametrize("name", ["spread", "paths"])
-def test_a_figure_is_drawn_from_its_data(many, name):
-    assert "runs" in (many / f"many/beyond/{name}.txt").read_text()
-    assert pd.read_csv(many / f"many/beyond/{name}.csv")["panel"].nunique() in (1, 2)
-    for ending in ("svg", "png", "pdf"):
-        assert (many / f"many/beyond/{name}.{ending}").stat().st_size > 1000
-
-
-def test_the_page_shows_what_there_is(many):
-    text = (many / "index.html").read_text()
-    assert "many/beyond/lengths.comparison.csv" in text

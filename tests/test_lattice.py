@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -21,7 +21,6 @@ def random_cells(seed):
 
 
 @given(st.integers(0, 10_000), st.sampled_from(RULES))
-@settings(max_examples=60)
 def test_a_step_leads_to_a_free_cell_beside_so_many_occupied_ones(seed, corners):
     occupied = random_cells(seed)
     rows, columns = occupied.shape

@@ -19,7 +19,6 @@ from bezierplan.papers.elhoseny2017.functions import q
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import gene_curves, gene_lattice, gene_lists
 from bezierplan.planners.parts.settings import filled
-from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -325,50 +324,6 @@ def test_children_that_are_not_crossed_mutate_as_well():
     assert found.extra["valid_share"] < 1.0
 
 
-@pytest.mark.parametrize("rate", [0.0, 0.006, 0.3, 1.0])
-def test_mutation_changes_each_gene_with_its_probability(rate):
-    found = field(100, (50, 50, 20))
-    rng = np.random.default_rng(8)
-    flips = []
-    counted = np.zeros(441, dtype=int)
-    for _ in range(2000):
-        child = np.empty(3 * 441, dtype=np.int64)
-        count = planner._mutate(rng, child, 0, found, rules(mutation_rate=rate))
-        assert found.settable[child[:count]].all()
-        assert np.all(np.diff(child[:count]) > 0)
-        counted[child[:count]] += 1
-        flips.append(count)
-    expected = rate * len(found.choices)
-    assert np.mean(flips) == pytest.approx(
-        expected, abs=4 * np.sqrt(expected * (1 - rate) / 2000) + 1e-12
-    )
-    share = counted[found.settable] / 2000
-    assert np.abs(share - rate).max() <= 5 * np.sqrt(rate * (1 - rate) / 2000) + 1e-12
-
-
-def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
-    rng = np.random.default_rng(10)
-    wheel = np.cumsum([1.0, 2.0, 5.0])
-    pairs = np.array([planner._parents(rng, wheel) for _ in range(20_000)])
-    assert np.all(pairs[:, 0] != pairs[:, 1])
-    np.testing.assert_allclose(np.bincount(pairs[:, 0]) / 20_000, [1 / 8, 2 / 8, 5 / 8], atol=0.015)
-    second = pairs[pairs[:, 0] == 2, 1]
-    np.testing.assert_allclose(
-        np.bincount(second, minlength=3)[:2] / len(second), [1 / 3, 2 / 3], atol=0.02
-    )
-    # Nearly all fitness in one chromosome: the other parent is found at once all the same.
-    wheel = np.cumsum([1e-9, 1e-2, 1e-9])
-    assert {planner._parents(rng, wheel) for _ in range(100)} <= {(1, 0), (1, 2)}
-    # All unfit: every pair alike.
-    pairs = [planner._parents(rng, np.cumsum(np.full(4, 1e-9))) for _ in range(2000)]
-    assert len(set(pairs)) == 12
-
-
-@given(numpy.arrays(float, st.integers(0, 30), elements=st.integers(0, 5).map(float)))
-def test_ascending_is_a_stable_order(values):
-    assert ascending(values).tolist() == np.argsort(values, kind="stable").tolist()
-
-
 def test_the_best_survive_and_of_equal_ones_the_first():
     pool = gene_lists.empty_pool(6, 120)
     for place, cost in enumerate([5.0, 3.0, 4.0, 3.0, 9.0, 4.0]):
@@ -380,24 +335,6 @@ def test_the_best_survive_and_of_equal_ones_the_first():
         gene_lists.put(np.array([place]), 1, cost, pool, place)
     gene_lists.select(pool, 3, 6)
     assert pool.ones[:3, 0].tolist() == [5, 0, 1]
-
-
-def test_q_of_a_pool_is_the_mean_over_all_pairs():
-    rng = np.random.default_rng(11)
-    rows = rng.random((12, 441)) < 0.02
-    rows[:, 7] = True
-    rows[5] = rows[3]
-    pool = gene_lists.empty_pool(12, 120)
-    for place, row in enumerate(rows):
-        ones = np.flatnonzero(row)
-        gene_lists.put(ones, len(ones), 1.0, pool, place)
-    every = [q(rows[i], rows[j]) for j in range(12) for i in range(j)]
-    assert gene_lists.sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
-    first = [q(rows[i], rows[j]) for j in range(8) for i in range(j)]
-    parts = gene_lists.sum_of_q(pool, 0, 8, 441) + gene_lists.sum_of_q(pool, 8, 12, 441)
-    assert parts == pytest.approx(sum(every), rel=1e-12)
-    assert sum(first) != sum(every)
-    assert gene_lists.kinds_of(pool, 12)[0] == 11
 
 
 def test_q_statistic():

@@ -42,40 +42,31 @@ def test_planners_find_the_modules_beside_them_and_no_others(tmp_path):
 
 
 SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"
-COMMANDS = {
-    "check-planner": ["check-planner", "ends.py", "--settings", "{tries: 1}"],
-    "plan": [
-        "plan",
-        "room.txt",
-        "--start",
-        "0.5,0.5",
-        "--target",
-        "1.5,0.5",
-        "--method",
-        "ends.py",
-        "--settings",
-        "{tries: 1}",
-    ],
-}
+PLAN = ["plan", "room.txt", "--start", "0.5,0.5", "--target", "1.5,0.5"]
+TRIES = ["--settings", "{tries: 1}"]
 
 
-@pytest.mark.parametrize(
-    ("command", "place"), [("plan", "import"), ("plan", "plan"), ("check-planner", "plan")]
-)
-def test_command_whose_planner_exits_says_so(command, place, tmp_path):
-    (tmp_path / "room.txt").write_text("..\n")
+@pytest.mark.parametrize("ends", ["import", "plan"])
+def test_command_whose_planner_exits_says_so(ends, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("room.txt").write_text("..\n")
     source = (
         f"import os\nos._exit(0)\n{SOUND}"
-        if place == "import"
+        if ends == "import"
         else SOUND.replace("return None", "import os; os._exit(0)")
     )
-    (tmp_path / "ends.py").write_text(source)
-    words = [sys.executable, "-m", "bezierplan", *COMMANDS[command]]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == (2 if command == "plan" else 1)
-    line = (done.stdout if command == "check-planner" else done.stderr).splitlines()[0]
-    assert "ends.py" in line
-    assert line.endswith("its process ended itself with exit status 0, before it was done")
+    Path("ends.py").write_text(source)
+    for words, status in (
+        ([*PLAN, "--method", "ends.py", *TRIES], 2),
+        (["check-planner", "ends.py", *TRIES], 2 if ends == "import" else 1),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            __main__.main(words)
+        assert ended.value.code == status
+        told = capsys.readouterr()
+        line = (told.err or told.out).splitlines()[0]
+        assert "ends.py" in line
+        assert line.endswith("its process ended itself with exit status 0, before it was done")
 
 
 @pytest.mark.parametrize(
@@ -131,7 +122,7 @@ def test_a_planner_may_use_libraries_each_time(tmp_path):
     """
     (tmp_path / "room.txt").write_text("..\n")
     (tmp_path / "uses.py").write_text(LIBRARIES)
-    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--method", "uses.py"]
+    words = [sys.executable, "-m", "bezierplan", *PLAN, "--method", "uses.py"]
     for _ in range(2):
         done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 from fields import BENCHMARK_MAPS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.figures.panels import workspace as picture
@@ -70,7 +70,6 @@ def test_the_bound_is_that_of_the_polygons(name):
     )
 
 
-@settings(max_examples=60)
 @given(st.data())
 def test_a_segment_over_free_cells_enters_no_polygon(data):
     name = data.draw(st.sampled_from(["complex2", "gaps"]))

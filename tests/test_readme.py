@@ -17,6 +17,7 @@ import starts
 import trees
 
 ROOT = Path(__file__).parents[1]
+SMOKE = ROOT / "results" / "smoke"
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, flags=re.M | re.S)
 COMMANDS = [
@@ -32,6 +33,7 @@ DRY = {
     "snakemake song2016": "snakemake -n song2016",
     "snakemake song2016_figure4": "snakemake -n song2016_figure4",
     "snakemake song2016_table1": "snakemake -n song2016_table1",
+    "snakemake song2016_beyond": "snakemake -n song2016_beyond",
 }
 ON_CLUSTER = {
     "make cluster",
@@ -53,11 +55,13 @@ def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
-    """A small copy of the tree after `make smoke`; a blank in the path."""
+    """A copy of the tree with the small subset, which `make test` makes before the tests; a blank
+    in the path.
+    """
+    assert SMOKE.is_dir(), "run snakemake smoke first"
     tree = trees.copy(tmp_path_factory.mktemp("readme") / "a clone")
-    trees.small(tree)
     (tree / ".venv").symlink_to(ROOT / ".venv")
-    executed(tree, "make smoke")
+    (tree / "results/smoke").symlink_to(SMOKE)
     return tree
 
 
@@ -90,9 +94,12 @@ def test_command_works_as_printed(tree, command):
 
 
 def test_own_study_of_the_readme_was_run(tree):
-    assert "Results: results/full/mystudy" in executed(
-        tree, "snakemake mystudy --config studies=[./mystudy]"
-    )
+    """And its progress is shown without a terminal."""
+    told = executed(tree, "snakemake mystudy --config studies=[./mystudy]")
+    assert "Results: results/full/mystudy" in told
+    (last,) = [line for line in told.splitlines() if "jobs done" in line][-1:]
+    done, total = re.match(r"(\d+) of (\d+) jobs done, \d+:\d\d:\d\d elapsed", last).groups()
+    assert done == total
     table = (tree / "results/full/mystudy/beyond/lengths.csv").read_text()
     assert "mine" in table
     assert "genetic" in table
@@ -102,10 +109,3 @@ def test_example_in_python_works_as_printed(tree):
     (code,) = [block for language, block in BLOCKS if language == "python"]
     (tree / "example.py").write_text(code)
     assert " True " in executed(tree, "python example.py")
-
-
-def test_progress_is_shown_without_a_terminal(tree):
-    lines = executed(tree, "make smoke").splitlines()
-    (last,) = [line for line in lines if "jobs done" in line][-1:]
-    done, total = re.match(r"(\d+) of (\d+) jobs done, \d+:\d\d:\d\d elapsed", last).groups()
-    assert done == total

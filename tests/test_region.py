@@ -4,7 +4,7 @@ stays there.
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.geometry.checker import check
@@ -33,7 +33,6 @@ coordinates = st.one_of(st.integers(0, 20).map(lambda n: n / 2), st.floats(0, 10
 
 @pytest.mark.parametrize("kind", WORKSPACES)
 @given(x=coordinates, y=coordinates)
-@settings(max_examples=150)
 def test_point_is_blocked_where_a_path_that_stays_there_collides(kind, x, y):
     found = region(WORKSPACES[kind])
     assert blocks(found, (x, y)) != check(np.array([[(x, y), (x, y)]]), found).feasible

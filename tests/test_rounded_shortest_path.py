@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fields import benchmark, drawn
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.geometry import curves
@@ -128,7 +128,6 @@ def test_one_circle_is_gone_round_by_its_own_arc():
     assert found.clearance == pytest.approx(0.7, abs=1e-4)
 
 
-@settings(max_examples=40)
 @given(st.integers(0, 10_000), st.sampled_from([0.2, 1.0, 4.0]), st.sampled_from([0.0, 0.5]))
 def test_random_circles(seed, turning_radius, offset):
     rng = np.random.default_rng(seed)

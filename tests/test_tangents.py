@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
@@ -179,7 +179,6 @@ def test_so_it_is_in_a_field_where_most_circles_are_hidden():
     assert len(assert_same(Problem("", circles, *map(tuple, ends))).points) > 20
 
 
-@settings(deadline=None, max_examples=150)
 @given(
     st.lists(st.tuples(LATTICE, LATTICE, st.sampled_from([0.25, 0.5, 1.0, 1.25])), max_size=6),
     PLACE,

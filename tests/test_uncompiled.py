@@ -105,20 +105,9 @@ def uncompiled(code: str) -> str:
     return ended.stdout
 
 
-def test_the_checker_answers_the_same_without_compilation():
-    said = uncompiled("import json, test_uncompiled; print(json.dumps(test_uncompiled.answers()))")
-    assert json.loads(said) == json.loads(json.dumps(answers()))
-
-
-def test_all_modules_import_without_compilation():
-    uncompiled(
-        "import importlib, test_uncompiled; [importlib.import_module(name) for name in "
-        "test_uncompiled.modules()]"
-    )
-
-
-def test_a_run_is_made_again_without_compilation():
-    assert (
-        uncompiled("import test_uncompiled; print(test_uncompiled.run_again())").strip()
-        == run_again()
-    )
+def test_the_checker_and_a_run_answer_the_same_without_compilation():
+    """In a process that has imported all modules."""
+    imports = "import importlib, json, test_uncompiled as own"
+    code = "[importlib.import_module(name) for name in own.modules()]"
+    code += "; print(json.dumps([own.answers(), own.run_again()]))"
+    assert json.loads(uncompiled(f"{imports}; {code}")) == [answers(), run_again()]

@@ -137,7 +137,6 @@ def test_the_core_plans_once_by_every_method(away):
 def test_the_papers_can_be_run_by_name_in_any_folder(away):
     place = prepared(away / "names")
     assert "song2016, tables: " in shell(away, "bezierplan list", place)
-    assert "page" in shell(away, "bezierplan run smoke -n", place)
     assert "song2016" in shell(away, "bezierplan run song2016_figure4 -n", place)
     said = shell(away, "bezierplan replay song2016/routes/15_240/smooth/3", place)
     assert "picture         results/replay/song2016/routes/15_240/smooth/3.svg" in said

@@ -383,7 +383,6 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
     """
     shutil.rmtree(tree / "results")
     for kill, moment, runs in (
-        (os.killpg, "problems/*.parquet", 7),
         (os.kill, "runs/*/*/*.parquet", 7),
         (os.killpg, "paper/*.csv", 16),
     ):
@@ -494,8 +493,3 @@ def test_every_artefact_is_a_named_target(tree):
         "song2016_table1",
         *(f"song2016_figure{n}" for n in range(1, 6)),
     } <= set(targets)
-
-
-def test_report_shows_every_artefact_with_its_caption(tree):
-    snakemake(tree, "--report", "report.zip")
-    assert (tree / "report.zip").stat().st_size > 100_000
