@@ -76,8 +76,6 @@ PLACES = ["table_row", "table_column", "as_printed"]
 the table's file, counted from 0 below its head and right of the names of rows, and its text.
 """
 
-VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
-
 NO_END = "interval without an end on that side"
 TOO_WIDE = "interval that contains most numbers of the competing methods"
 OFF_OURS = f"interval that contains the number {100 * MATTERS:g} % off ours, or no run has it"

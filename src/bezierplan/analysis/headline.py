@@ -7,14 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import baseline_comparison, comparison
-from bezierplan.analysis.claims.verdicts import VERDICTS
+from bezierplan.analysis import baseline_comparison, comparison, words
 from bezierplan.analysis.markdown import table_text
 
 COLUMNS = {
-    "numbers": "numbers: agree, disagree, open",
+    "numbers": f"numbers: {', '.join(dict.fromkeys(words.groups('number').values()))}",
     "close": "within 10 %",
-    "claims": "claims: hold, partly, fail, open",
+    "claims": f"claims: {', '.join(dict.fromkeys(words.groups('claim').values()))}",
     "feasible": "proposed method: free paths",
     "length": "its length",
     "cpu": "its CPU time",
@@ -33,15 +32,6 @@ LEGEND = (
 
 CLOSE = 0.1
 """Relative deviation up to which a number is close to the printed one."""
-
-_IN_WORDS = {
-    "agrees": "in agreement",
-    "disagrees": "in disagreement",
-    "partly": "supported in part",
-    "no effect": "without effect",
-    "depends": "dependent on what the paper leaves open",
-}
-"""Verdicts that are no adjectives."""
 
 
 class Headline(NamedTuple):
@@ -62,11 +52,9 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     """
     judged = numbers[numbers["counted"]]
     deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
-    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(
-        columns=VERDICTS, fill_value=0
-    )
-    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(
-        columns=comparison.VERDICTS, fill_value=0
+    counts, verdicts = (
+        pd.crosstab(rows["study"], rows["verdict"]).reindex(columns=[*words.on(what)], fill_value=0)
+        for rows, what in ((judged, "number"), (deciding, "claim"))
     )
     counts.insert(0, "numbers", counts.sum(axis=1))
     return counts.join(verdicts, how="outer").fillna(0).astype(int)
@@ -82,18 +70,16 @@ def headline(
     """
     counts = outcome(numbers, claims)
     sentences = [
-        _sentence("published number", counts[list(comparison.VERDICTS)].sum()),
-        _sentence("claim", counts[list(VERDICTS)].sum()) + _by_our_criterion(claims),
+        _sentence("published number", counts[[*words.on("number")]].sum()),
+        _sentence("claim", counts[[*words.on("claim")]].sum()) + _by_our_criterion(claims),
         beside_baseline(measures),
     ]
     counted = numbers[numbers["counted"].astype(bool)]
     rows = {
         study: {
-            "numbers": _of(
-                [row["identified"] + row["agrees"], row["disagrees"], row["inconclusive"]]
-            ),
+            "numbers": _grouped(row, "number"),
             "close": _close(deviations(counted[counted["study"] == study])),
-            "claims": _of(_fewer(row)),
+            "claims": _grouped(row, "claim"),
             **_measured(measures[measures["study"] == study]),
         }
         for study, row in counts.loc[sorted(counts.index, key=list(titles).index)].iterrows()
@@ -143,7 +129,7 @@ def _sentence(noun: str, counts: pd.Series) -> str:
     """How many things have each verdict, in words; empty without things."""
     total = int(counts.sum())
     parts = [
-        f"{count} {_IN_WORDS.get(verdict, verdict)}" for verdict, count in counts.items() if count
+        f"{count} {words.WORDS[verdict].counted}" for verdict, count in counts.items() if count
     ]
     return f"{baseline_comparison.counted(total, noun)}: {', '.join(parts)}." if total else ""
 
@@ -155,25 +141,18 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
     deciding = claims[
         claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)
     ]
-    count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
+    count = int((deciding["verdict"].map(words.groups("claim")) == "fail").sum())
+    if not count:
+        return ""
     fails = f"{baseline_comparison.counted(count, 'claim')} {'fails' if count == 1 else 'fail'}"
-    return f" {fails} only by our own criterion, because the paper gives no number." * bool(count)
+    return f" {fails} only by our own criterion, because the paper gives no number."
 
 
-def _fewer(row: pd.Series) -> list[int]:
-    """Counts of claims in four kinds: supported, partly, contradicted or no effect, undecided or
-    untestable.
-    """
-    return [
-        row["supported"],
-        row["partly"],
-        row["contradicted"] + row["no effect"],
-        row["depends"] + row["undecided"] + row["untestable"],
-    ]
-
-
-def _of(counts: list[int]) -> str:
-    return ", ".join(map(str, counts)) if sum(counts) else ""
+def _grouped(counts: pd.Series, what: str) -> str:
+    """How many numbers or claims count as each group; empty without any. counts: by verdict."""
+    groups = words.groups(what)
+    found = counts[[*groups]].groupby(groups, sort=False).sum()
+    return ", ".join(map(str, found)) if found.any() else ""
 
 
 def _close(off: np.ndarray) -> str:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import words
+
 _SIGNS = {
     "\\": r"\textbackslash{}",
     "~": r"\textasciitilde{}",
@@ -23,11 +25,11 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-MARKS = {"agrees": "+", "disagrees": "x", "inconclusive": "?"}
-IDENTIFIED = " ="
+_MARKS = {verdict: word.sign for verdict, word in words.on("number").items()}
+IDENTIFIED = f" {_MARKS.pop('identified')}"
 LEGEND = (
     f"Above: printed;{IDENTIFIED} a length of paths that we can name. Below: ours; "
-    + ", ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
+    + ", ".join(f"{mark} {verdict}" for verdict, mark in _MARKS.items())
 )
 
 
@@ -41,7 +43,7 @@ def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataF
     for number in numbers[numbers["table_row"] != ""].to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
         above = number["as_printed"] + (IDENTIFIED if number["identified"] else "")
-        below = f"{cells[place]} {MARKS.get(number['verdict'], '')}".strip()
+        below = f"{cells[place]} {_MARKS.get(number['verdict'], '')}".strip()
         over[place] = f"{above}\n{below}"
     return ours.iloc[:, :heads].join(pd.DataFrame(over, ours.index, ours.columns[heads:]))
 

@@ -34,10 +34,6 @@ import numpy as np
 
 from bezierplan.analysis.claims.effects import ALPHA, Finding
 
-VERDICTS = (
-    *("supported", "partly", "contradicted", "no effect"),
-    *("depends", "undecided", "untestable"),
-)
 # Least share of all comparisons that must be decided; if no decided one speaks against the claim,
 # the least share that must hold.
 DECIDED, HOLDING = 0.5, 0.75

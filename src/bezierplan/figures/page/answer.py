@@ -5,10 +5,8 @@ use on a map of one's own.
 from types import SimpleNamespace
 from typing import Any
 
+from bezierplan.analysis import words
 from bezierplan.figures.page.reader import Row
-
-FAILS = ("contradicted", "no effect")
-"""Verdicts on claims that fail."""
 
 
 def about_scale(scale: str, repeats: list[dict[str, list[int]]], stored: bool) -> str:
@@ -45,9 +43,14 @@ def sentences_of_paper(study: SimpleNamespace) -> list[Row]:
     return [claim for claim in study.claims if not claim["finding"]]
 
 
+def group_of(claim: Row) -> str:
+    """What the verdict of a claim counts as."""
+    return words.WORDS.get(claim["verdict"], words.OTHER).group
+
+
 def failing(study: SimpleNamespace) -> list[Row]:
     """Sentences of a paper that fail, also those that do by a criterion of ours."""
-    return [claim for claim in sentences_of_paper(study) if claim["verdict"] in FAILS]
+    return [claim for claim in sentences_of_paper(study) if group_of(claim) == "fail"]
 
 
 def counted(study: SimpleNamespace) -> list[Row]:

@@ -14,26 +14,11 @@ from typing import Any
 
 import bezierplan
 from bezierplan import places
-from bezierplan.analysis import baseline_comparison, headline, wholes
-from bezierplan.figures.page import HERE, OUTCOME, addresses, answer, charts, glossary, reader, runs
+from bezierplan.analysis import baseline_comparison, headline, wholes, words
+from bezierplan.figures.page import HERE, OUTCOME, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.page.why import meaning
 
-# Verdict -> the class that colours it and its symbol; another verdict gets the last one.
-LOOKS = {
-    "identified": ("good", "◉"),
-    "agrees": ("good", "●"),
-    "disagrees": ("bad", "✕"),
-    "inconclusive": ("open", "○"),
-    "supported": ("good", "●"),
-    "partly": ("part", "◑"),
-    "contradicted": ("bad", "✕"),
-    "no effect": ("bad", "="),
-    "depends": ("open", "±"),
-    "undecided": ("open", "?"),
-    "untestable": ("open", "–"),
-}
-_OTHER = ("open", "·")
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {
     "+": ("good", "holds"),
@@ -161,7 +146,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         keep_trailing_newline=True,
     )
     environment.filters |= {
-        "look": lambda verdict: LOOKS.get(verdict, _OTHER),
+        "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
         "short": short,
         "heading": addresses.heading,
         "counts": counts,
@@ -183,7 +168,8 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
-        "words": glossary.WORDS,
+        "verdicts_on": words.on,
+        "words": words.WORDS,
     }
     return environment
 
@@ -209,9 +195,9 @@ def short(value: Any, digits: int = 4) -> str:
 
 
 def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
-    """How many rows there are of each verdict, in the order of `LOOKS`."""
+    """How many rows there are of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
-    names = [*LOOKS, *sorted(found.keys() - LOOKS.keys())]
+    names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 
