@@ -11,7 +11,7 @@ from bezierplan.analysis import table_kinds
 from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.figures import figure, panels
+from bezierplan.figures import figure, layout, panels
 from bezierplan.places import TREE
 from bezierplan.running import columns
 from bezierplan.schema.model import Model, keys
@@ -40,6 +40,10 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("An entry of a table's `monotone`", table_kinds.Monotone),
         ("A **figure**", figure.Figure),
         ("A panel has `kind`, and by kind", panels.kinds()),
+    ],
+    "layout": [
+        ("The file", artefacts.LayoutFile),
+        ("A table or figure", layout.Layout),
     ],
     "claims": [
         ("A claim", Claim),

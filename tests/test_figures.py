@@ -718,7 +718,8 @@ def test_convergence_shows_the_run_and_in_context_the_median_and_the_band():
     assert labelled(axes, "exact shortest path")[1] == [1.5, 1.5]
     assert labelled(axes, "best known path of the same kind")[1] == [1.75, 1.75]
     alone = axes_of(convergence, history(), pick={"repeat": 3})
-    assert [line.get_label() for line in alone.lines] == ["run shown"]
+    assert [list(line.get_ydata()) for line in alone.lines] == [[9, 7, 6]]
+    assert not alone.get_legend_handles_labels()[1], "a single line needs no legend"
 
 
 def test_convergence_of_groups_shows_their_objectives():

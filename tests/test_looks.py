@@ -56,8 +56,23 @@ def test_methods_side_by_side_look_different(name):
             where = getattr(panel, "where", None) or {}
             methods = where.get("method")
             if isinstance(methods, list):
-                own = [looks[method] for method in methods]
+                own = [(look["color"], look["marker"]) for look in style.lines(methods, looks)]
                 assert len(set(own)) == len(own), (key, dict(zip(methods, own)))
+
+
+def test_a_chaotic_map_has_one_colour_in_twin_figures():
+    own = STUDIES["tharwat2018"]
+    colours = []
+    for name in ("figure8", "figure9"):
+        methods = own.figures[name].panels[0].where["method"]
+        looks = style.lines(methods, jobs.looks(own))
+        colours.append(
+            [
+                (look["color"], own.layout[name].names[method])
+                for look, method in zip(looks, methods)
+            ]
+        )
+    assert colours[0] == colours[1]
 
 
 def test_a_method_looks_alike_in_all_studies():

@@ -78,7 +78,7 @@ RUNS = {
     "ma2020": ("30", "cell"),
     "meledje": ("100", "cell"),
     "song2016": ("", "unit"),
-    "tharwat2018": ("10", "unit"),
+    "tharwat2018": ("10", "m"),
 }
 
 

@@ -59,10 +59,6 @@ class Figure(Model):
         "two", description="of the sheet, in columns of a journal: one (8.5 cm) or two (17 cm)"
     )
     panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
-    mirrors: Line = Field(
-        None,
-        description="for the caption: what the paper's figure shows, and whether this one does",
-    )
 
     @property
     def workspaces(self) -> list[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job
+from bezierplan.figures.layout import Layout
 from bezierplan.figures.page.page_job import ExperimentView, PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
@@ -52,6 +53,8 @@ class Figure(Job):
     width: str
     """Of the sheet, a key of `style.WIDTHS`."""
     panels: list[Panel]
+    layout: Layout | None
+    """Of the paper's figure, if it is one of a paper."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     looks: dict[str, str]
@@ -100,7 +103,9 @@ class Figure(Job):
         drawings = study_code.part_of(
             [name for name in self.code if study_code.part(name) == "panels"]
         )
-        scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks, drawings)
+        scene = sheet.Scene(
+            problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout
+        )
         functions = study_code.functions(self.code)
         sources = Sources(experiments, workspaces, functions, published, self.study)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)

@@ -17,6 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bezierplan.figures import style
+from bezierplan.figures.layout import Layout
 from bezierplan.figures.panels import Note, Panel, Sources, kind_module
 from bezierplan.workspaces.problem import Problem, Workspace
 
@@ -35,7 +36,8 @@ class Scene(NamedTuple):
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
-    its look (`style.LOOKS`). functions: those of the study that draw, by name.
+    its look (`style.LOOKS`). functions: those of the study that draw, by name. layout: of the
+    paper's figure.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -44,6 +46,7 @@ class Scene(NamedTuple):
     unit: str
     looks: Mapping[str, str] = MappingProxyType({})
     functions: Mapping[str, Callable[..., Any]] = MappingProxyType({})
+    layout: Layout | None = None
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
@@ -94,6 +97,8 @@ def draw(
             projection = getattr(kind, "PROJECTION", None)
             axes = figure.add_subplot(rows, columns, number + 1, projection=projection)
             notes.append(kind.draw(axes, rows_of_panel, scene, panel))
+            if scene.layout:
+                scene.layout.dress(axes, number)
             _fit(
                 axes,
                 letter
@@ -103,7 +108,7 @@ def draw(
                 inches / columns,
             )
         _name_axes_once(figure.axes[: len(panels)], columns)
-        _draw_legend(figure)
+        _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
     captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
     figure.set_label("\n".join(filter(None, captions)))
@@ -166,14 +171,16 @@ def _name_axes_once(panels: list[Axes], columns: int) -> None:
             axes.set_xlabel("")
 
 
-def _draw_legend(figure: Figure) -> None:
+def _draw_legend(figure: Figure, names: Mapping[Any, str]) -> None:
     """One legend for all panels below them, with each label once, in as few rows as the width
-    allows.
+    allows: first what print names, in its order, and last what is said about all others.
     """
-    handles = {}
+    found = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
+            found.setdefault(names.get(label, label), handle)
+    order = [*names.values(), *(label for label in found if label not in style.LAST), *found]
+    handles = {label: found[label] for label in dict.fromkeys(order) if label in found}
     for columns in range(len(handles), 0, -1):
         legend = figure.legend(
             handles.values(), handles.keys(), loc="outside lower center", ncols=columns

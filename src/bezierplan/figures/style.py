@@ -61,6 +61,7 @@ def mark(shape: str, size: float, colour: str, **more: Any) -> dict[str, Any]:
 
 RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
+COLOURS = {"red": RED, "blue": BLUE, "black": BLACK}
 
 # Published values and ours: the same style in all figures of all papers.
 PUBLISHED = {"color": BLACK, "linestyle": (0, (5, 2)), "linewidth": 1.1}
@@ -122,6 +123,16 @@ INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
 # In the legend, the mark of a statistic to which not all runs contribute.
 HOLLOW = mark("o", 3.5, BLACK, markerfacecolor=FREE)
 HOLLOW_LABEL = "hollow: some runs are not feasible"
+
+# Labels that stand last in a legend, because they are about all others.
+LAST = {
+    INTERVAL["label"],
+    HOLLOW_LABEL,
+    "published",
+    "published mean",
+    "published final mean",
+    "published minimum and maximum",
+}
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
@@ -277,14 +288,10 @@ def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
 
 
 def printed(value: Any, column: str, labels: dict[str, str]) -> str:
-    """How a value of a column is printed: a name as its label, a number after the column's
-    label.
-    """
-    return (
-        labels.get(value, value)
-        if isinstance(value, str)
-        else f"{column_name(column, labels)} = {value:g}"
-    )
+    """How a value of a column is printed: as its label, or a number after the column's label."""
+    name = value if isinstance(value, str) else f"{value:g}"
+    without = name if isinstance(value, str) else f"{column_name(column, labels)} = {name}"
+    return labels.get(name, without)
 
 
 def column_name(column: str, labels: dict[str, str]) -> str:

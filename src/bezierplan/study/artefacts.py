@@ -1,5 +1,5 @@
-"""Models of `artefacts.yaml`: tables and figures, and how names are printed; and of the
-configuration. Kinds of table and figures are defined next to the code that makes them.
+"""Models of `artefacts.yaml`: tables and figures, and how names are printed; of `layout.yaml`; and
+of the configuration. Kinds of table and figures are defined next to the code that makes them.
 """
 
 from typing import Annotated, Any, Literal
@@ -9,6 +9,7 @@ from pydantic import Field
 from bezierplan.analysis.table_kinds import TABLES, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
+from bezierplan.figures.layout import Layout
 from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or, one_of
 from bezierplan.study.experiments import Settings
 from bezierplan.workspaces.kinds import FileName
@@ -33,6 +34,14 @@ class ArtefactsFile(Model):
         {}, description="name → a table"
     )
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
+
+
+class LayoutFile(Model):
+    """The file."""
+
+    layout: dict[Name, Layout] = Field(
+        description="name of a table or figure of a paper → how the paper prints it"
+    )
 
 
 class ConfigFile(Model):

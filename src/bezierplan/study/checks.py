@@ -130,6 +130,8 @@ class Checks:
             self.each("tables", study.tables, self.table)
             self.each("figures", study.figures, self.figure)
             self.prints()
+        with self.at(relative(study.folder / "layout.yaml")):
+            check_all(study.layout, {**study.tables, **study.figures}, "layout")
         for section, entries, work in (
             ("claims", study.claims, self.claim),
             ("assumptions", study.assumptions, self.assumption),

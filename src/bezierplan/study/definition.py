@@ -1,9 +1,10 @@
 """A study as defined by its files."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.figures.layout import Layout
 from bezierplan.places import relative
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.schema.model import one_or_list
@@ -23,6 +24,7 @@ class Study(Experiments, ArtefactsFile):
     claims: Sequence[Claim] = ()
     assumptions: Sequence[Assumption] = ()
     votes: dict
+    layout: Mapping[str, Layout] = {}
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""

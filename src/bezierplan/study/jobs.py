@@ -176,8 +176,11 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     A function may name any.
     """
     spec = study.tables.get(artefact) or study.figures[artefact]
+    own = getattr(spec, "labels", {})
+    if layout := study.layout.get(artefact):
+        own = own | layout.names
     if isinstance(spec, FunctionTable) or getattr(spec, "calls", False):
-        return study.labels
+        return study.labels | own
     shown = set()
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
@@ -188,7 +191,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
     return {
         name: label for name, label in study.labels.items() if name in shown or name not in names
-    } | getattr(spec, "labels", {})
+    } | own
 
 
 def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
@@ -242,6 +245,7 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
         columns=spec.columns,
         width=spec.width,
         panels=spec.panels,
+        layout=study.layout.get(figure),
         labels=labels_of(study, figure),
         looks={name: look for name, look in looks(study).items() if spec.calls or name in methods},
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
@@ -262,16 +266,25 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: title, how it mirrors the paper's, and the repeats in
-    force. The page has the settings of each method.
+    """The caption of a table or figure: title, what the paper says of its own, and the repeats in
+    force. The page has the settings of each method, and the verdicts of claims about it.
     """
     spec = study.tables.get(artefact) or study.figures[artefact]
-    sentences = [spec.title, getattr(spec, "mirrors", None)]
+    layout = study.layout.get(artefact)
+    sentences = [spec.title, f"In print: {layout.says}" if layout else None]
+    parts = getattr(spec, "panels", [spec])
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
-        most = "at most " if scale == "extended" and content.fewer else ""
-        repeats = content.repeats[scale]
-        sentences.append(f"{experiment}: {most}{repeats} runs of each method on each problem")
+        own = [part.where for part in parts if getattr(part, "experiment", None) == experiment]
+        listed = max(len(one_or_list(where.get("repeat", []))) for where in own)
+        repeats = listed or content.repeats[scale]
+        drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
+        layouts = max(each[scale] for each in drawn)
+        sentences.append(
+            f"{experiment}: {'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
+            f"run{'s' * (repeats > 1)} of each method on each "
+            + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
+        )
     return ". ".join(filter(None, sentences)) + "."
 
 

@@ -14,7 +14,7 @@ from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import parsed, sound_part
 from bezierplan.schema.words import told
-from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
+from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import ExperimentsFile
@@ -61,6 +61,7 @@ def _with_values(settings: Any) -> Any:
 FILES = {
     "experiments": ExperimentsFile,
     "artefacts": ArtefactsFile,
+    "layout": LayoutFile,
     "claims": ClaimsFile,
     "assumptions": AssumptionsFile,
 }

@@ -14,7 +14,14 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import statistics
 from bezierplan.figures import glance, style
-from bezierplan.figures.groups import LIMITS, grouped, limits, published, runs_note
+from bezierplan.figures.groups import (
+    LIMITS,
+    axis_label,
+    grouped,
+    limits,
+    published,
+    runs_note,
+)
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
 from bezierplan.schema.model import Column, PrintedTable, Whole, wrong
@@ -164,7 +171,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.hue is not None:
         return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame, context=options.context)
-    axes.set_ylabel(f"objective ({scene.unit})")
+    axes.set_ylabel(axis_label("objective", scene))
     style.measure(axes.yaxis)
     return Note("", run_note(frame, feasible_note(frame)))
 
@@ -176,7 +183,8 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
         axes.fill_between(generation, frame["quartile1"], frame["quartile3"], **band)
         axes.plot(generation, frame["median"], label="median of all runs", **style.OURS)
     if frame["objective"].notna().any():
-        axes.plot(generation, frame["objective"], label="run shown", **style.RUN_SHOWN)
+        label = "run shown" if context else None
+        axes.plot(generation, frame["objective"], label=label, **style.RUN_SHOWN)
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -195,7 +203,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             axes.plot([], [], label="published final mean", **style.PUBLISHED_MARK)
     if len(groups) <= _MOST_BANDS:
         axes.plot([], [], **style.INTERVAL | {"linewidth": 4, "alpha": 0.3})
-    axes.set_ylabel(f"{options.statistic} objective ({scene.unit})")
+    axes.set_ylabel(axis_label("objective", scene, options.statistic))
     style.measure(axes.yaxis)
     ends = frame[frame["generation"] == frame["generation"].max()]
     name = f"final {options.statistic}"

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
+from bezierplan.figures.groups import axis_label
 from bezierplan.figures.panels import Note, RunsPanel, Sources, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Function
@@ -97,7 +98,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     numbers = round_numbers(values)
     bar.set_ticks(numbers, labels=[f"{number:g}" for number in numbers])
     bar.minorticks_off()
-    bar.set_label(f"objective ({scene.unit})")
+    bar.set_label(axis_label("objective", scene))
     return minima_note(frame, scene.unit)
 
 

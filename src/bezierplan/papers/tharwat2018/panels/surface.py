@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bezierplan.figures.groups import axis_label
 from bezierplan.figures.panels import Note
 from bezierplan.papers.tharwat2018.panels import landscape
 from bezierplan.papers.tharwat2018.panels.landscape import data as data
@@ -33,10 +34,10 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     look = {"rstride": 2, "cstride": 2, "linewidth": 0, "antialiased": False, "rasterized": True}
     axes.plot_surface(*np.meshgrid(x, y), np.log10(values), facecolors=colours, **look)
     axes.view_init(elev=45, azim=-60)
-    axes.set_box_aspect((1, 1, 0.7), zoom=0.8)
+    axes.set_box_aspect((1, 1, 0.7), zoom=0.95)
     axes.set_xlabel(f"x ({unit})", labelpad=-6)
     axes.set_ylabel(f"y ({unit})", labelpad=-6)
-    axes.set_zlabel(f"objective ({scene.unit})", labelpad=-6)
+    axes.set_zlabel(axis_label("objective", scene), labelpad=-6)
     numbers = landscape.round_numbers(values)
     axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
     axes.tick_params(pad=-3)

@@ -25,6 +25,13 @@ if TYPE_CHECKING:
 _CLOSE = 1.2
 
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
+# The first two as the paper has them.
+_LINES = [
+    {"color": colour, "linestyle": dashes}
+    for colour, (_, dashes, _) in zip(
+        (style.BLACK, style.RED, style.BLUE, style.AMBER, "0.5"), style.LOOKS.values()
+    )
+]
 _FIRST = style.mark(
     "o", 7, style.BLUE, markerfacecolor="none", markeredgewidth=1.3, label="first position"
 )
@@ -97,9 +104,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     home = workspaces.draw_home(axes, frame, scene, options)
     style.draw_parts(axes, frame, workspaces.ENDS)
     notes = []
-    for (run, way), name, look in zip(frame.groupby("run"), _NAMES, style.lines(_NAMES)):
-        line = {"color": look["color"], "linestyle": look["linestyle"], "label": name}
-        axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, **line)
+    for (run, way), name, look in zip(frame.groupby("run"), _NAMES, _LINES):
+        axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, label=name, **look)
         cross = style.mark("X", 7, look["color"], markeredgecolor=style.FREE, label="last position")
         for end, mark in ((way[:1], _FIRST), (way[-1:], cross)):
             axes.plot(end["x"], end["y"], zorder=6, **mark)

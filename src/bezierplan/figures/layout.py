@@ -1,0 +1,70 @@
+"""How a paper prints a table or figure, as far as its text says: the words and colours that ours
+takes from it, and what tests compare with ours.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Axis = Literal["x", "y", "z"]
+Words = Annotated[dict[Any, str] | list[str], mapping_or(dict[Setting, Line], listed(Line))]
+
+
+class Layout(Model):
+    """A table or figure in print."""
+
+    says: Line = Field(description="what the text says of it, in words of one's own")
+    series: Words = Field(
+        {},
+        description="what a figure shows, in the order of print: name, value or entry of the "
+        "legend → its printed name; or a list of these",
+    )
+    axes: dict[Axis, listed(Line)] = Field(
+        {}, description="x, y or z → what the axis shows, in all panels or in each"
+    )
+    units: dict[Axis, listed(Line)] = Field({}, description="likewise its unit")
+    looks: dict[Line, dict[Name, Setting]] = Field(
+        {},
+        description="entry of the legend → properties of matplotlib that print gives it, such as "
+        "color; red, blue and black are those of all figures",
+    )
+    heads: dict[Name, str] = Field(
+        {}, description="column of the runs table → the printed head of a table, or an empty one"
+    )
+    rows: Words = Field(
+        {}, description="rows of a table, in the order of print: name → its printed name; or a list"
+    )
+    words: dict[Name, Line] = Field({}, description="other names of a table, likewise")
+    form: dict[Name, Any] = Field(
+        {}, description="the rest of its form, which tests compare: panels, kind, columns, ..."
+    )
+    conditions: dict[Name, Any] = Field(
+        {}, description="what print says of the runs behind it, which tests compare with ours"
+    )
+
+    @property
+    def names(self) -> dict[Any, str]:
+        """Printed names, in their order. A blank one is a space: pandas would name an empty one."""
+        parts = (self.heads, self.rows, self.words, self.series)
+        every = [part if isinstance(part, dict) else dict(zip(part, part)) for part in parts]
+        return {name: printed or " " for part in every for name, printed in part.items()}
+
+    def dress(self, axes: Axes, number: int) -> None:
+        """Give the axes and the parts of the panel of a number the words and colours of print;
+        units stay those of what is drawn.
+        """
+        for name, given in self.axes.items():
+            own = getattr(axes, f"get_{name}label")()
+            unit = own[own.rfind(" (") :] if own.endswith(")") else ""
+            axes.set(**{f"{name}label": given[min(number, len(given) - 1)] + unit})
+        for artist in axes.get_children():
+            look = self.looks.get(artist.get_label(), {})
+            artist.set(**{key: style.COLOURS.get(value, value) for key, value in look.items()})
