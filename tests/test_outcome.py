@@ -28,6 +28,7 @@ def comparison(values, ours, methods=("plain", "other")):
         "value_published": values,
         "value_ours_scaled": ours,
         "why": "",
+        "identified": None,
     }
     verdict = ["agrees" if each else "disagrees" for each in in_range]
     return pd.DataFrame(

@@ -152,17 +152,17 @@ def _measured(
     return metrics.values(counted, metric, results.problems).reindex(runs.index)
 
 
-def placed(found: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+def placed(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
     """Cells as from `cells`, each with its place in the table, from 0. Added: table_row,
     table_column.
     """
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
-    ordered = in_order(found, spec, problems)
-    ordered["statistic"] = pd.Categorical(found["statistic"], categories=list(order), ordered=True)
+    ordered = in_order(groups, spec, problems)
+    ordered["statistic"] = pd.Categorical(groups["statistic"], categories=list(order), ordered=True)
     rows, columns = (
         ordered.groupby(levels, dropna=False, observed=True).ngroup() for levels in _levels(spec)
     )
-    return found.assign(table_row=rows, table_column=columns)
+    return groups.assign(table_row=rows, table_column=columns)
 
 
 def laid(
