@@ -108,7 +108,7 @@ def columns_of(table: columns.Table) -> str:
     """The table of columns of a kind of file, as Markdown."""
     return _columns(
         [
-            (name, kind, about.unit, about.meaning)
+            (name, kind, about.unit, _meaning(about))
             for name, (kind, about) in columns.declared(*table.every).items()
         ]
     )
@@ -119,8 +119,15 @@ def columns_of_drives(table: columns.Table) -> str:
     every, own = columns.declared(*table.every), columns.declared(table.drives)
     other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
     return _columns(
-        [*other, *((name, kind, about.unit, about.meaning) for name, (kind, about) in own.items())]
+        [
+            *other,
+            *((name, kind, about.unit, _meaning(about)) for name, (kind, about) in own.items()),
+        ]
     )
+
+
+def _meaning(about: columns.Column) -> str:
+    return "; ".join(filter(None, [about.meaning, about.detail]))
 
 
 def columns_of_claims(tables: tuple[type, ...]) -> str:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from bezierplan.running import columns
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -79,6 +81,9 @@ class Metrics(dict[str, Metric]):
 
 
 METRICS = Metrics()
+COLUMNS = columns.declared(
+    *(table for own in columns.TABLES.values() for table in (*own.every, own.drives))
+)
 ALL_STUDIES: set[str] = set()
 """Names of the metrics of every study, which no study declares anew."""
 
@@ -97,6 +102,16 @@ def count(
 ) -> Metric:
     """A count of every run, or whether something is true of it: 1 or 0."""
     return Metric("-", meaning, compute, step=1.0, **more)
+
+
+def of_column(name: str, **more: Any) -> Metric:
+    """A column that every table of runs, of drives or of their bounds and times has: unit and
+    meaning are those of the column.
+    """
+    values, column = COLUMNS[name]
+    unit = {"units": "u", "": "-"}.get(column.unit, column.unit)
+    whole = {"step": 1.0} if values in (int, bool) else {}
+    return Metric(unit, column.meaning, **whole, **more)
 
 
 def generation(meaning: str, compute: Compute) -> Metric:

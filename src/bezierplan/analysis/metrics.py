@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bezierplan.analysis import measures
-from bezierplan.analysis.metric import ALL_STUDIES, METRICS, Metric, count, generation
+from bezierplan.analysis.metric import ALL_STUDIES, METRICS, Metric, count, generation, of_column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,11 +96,32 @@ def unit(name: str, workspace_unit: str) -> str:
 AT_LEAST_A_LENGTH = ("length", "objective")
 """Metrics that are path lengths or never less."""
 
+AT_LEAST_0 = {"least": 0.0}
+OF_COLUMNS: dict[str, dict[str, Any]] = {
+    "objective": {},
+    "length": {"feasible_only": True, "least": "bound"},
+    "claimed_feasible": {},
+    "feasible": {},
+    "collision_depth": {},
+    "clearance": {},
+    "evaluations": AT_LEAST_0,
+    "generations": {},
+    "cpu_s": AT_LEAST_0,
+    "arrival": AT_LEAST_0 | {"feasible_only": True},
+    "hit_waiting": {},
+    "clearance_least": {},
+    "least_arrival": {},
+}
+OF_COLUMNS |= dict.fromkeys(
+    ["steps", "travelled", "replans", "waits", "collision_steps"], AT_LEAST_0
+)
+OF_COLUMNS |= dict.fromkeys(
+    ["replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"], AT_LEAST_0
+)
+"""Columns of `running.columns` that are metrics -> what else is known of these."""
+
+METRICS |= {name: of_column(name, **facts) for name, facts in OF_COLUMNS.items()}
 METRICS |= {
-    "objective": Metric("u", "final value of the planner's objective"),
-    "length": Metric("u", "exact arc length", feasible_only=True, least="bound"),
-    "claimed_feasible": count("the planner's own test of the path"),
-    "feasible": count("the certified checker's test of the path"),
     "failed": count(
         "without a path that the certified checker accepts",
         lambda runs, _: ~runs["feasible"].astype(bool),
@@ -112,11 +133,6 @@ METRICS |= {
     "wrongly_rejected": count(
         "free by the checker's test, not by the planner's own", partial(measures.disagrees, False)
     ),
-    "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border"),
-    "clearance": Metric("u", "least distance to the obstacles and the border"),
-    "evaluations": count("paths whose objective the planner asked for", least=0.0),
-    "generations": count("generations made"),
-    "cpu_s": Metric("s", "CPU seconds of the run alone", least=0.0),
     "gap": Metric(
         "-",
         "length / exact shortest length of the problem - 1",
@@ -148,30 +164,9 @@ METRICS |= {
         partial(measures.deviation, "length"),
         feasible_only=True,
     ),
-    "arrival": Metric("steps", "when the robot arrives", feasible_only=True, least=0.0),
-    "steps": Metric("steps", "how long the robot drives and waits", least=0.0),
-    "travelled": Metric("u", "distance travelled, whether or not it is free", least=0.0),
-    "replans": count("plans after the first", least=0.0),
-    "waits": Metric("steps", "how long the robot waits", least=0.0),
-    "collision_steps": count("steps in which the robot is in an obstacle", least=0.0),
     "collided": count(
         "whether the robot is in an obstacle at any time",
         lambda runs, _: runs["collision_at"].notna(),
-    ),
-    "hit_waiting": count("whether the robot waits when it first collides"),
-    "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle"),
-    "least_arrival": Metric(
-        "steps", "lower bound on the arrival: time for the shortest path among what is always there"
-    ),
-    "replan_mean_s": Metric(
-        "s", "CPU seconds of a plan after the first, mean of a drive", least=0.0
-    ),
-    "replan_95_s": Metric(
-        "s", "CPU seconds of a plan after the first, 95th percentile of a drive", least=0.0
-    ),
-    "replans_late": count("plans after the first that took longer than a step", least=0.0),
-    "replan_max_s": Metric(
-        "s", "CPU seconds of a plan after the first, largest of a drive", least=0.0
     ),
 }
 

@@ -31,13 +31,14 @@ VALUES = {
 
 
 class Column(NamedTuple):
-    """What a column means, in words for a table in Markdown; its unit, empty for a pure number;
-    what it means of a drive, where that is something else.
+    """What a column means, in a phrase; its unit, empty for a pure number; what it means of a
+    drive, where that is something else; and what a reader of the file should know beside.
     """
 
     meaning: str
     unit: str = ""
     drive: str = ""
+    detail: str = ""
 
 
 def tables(module: str) -> list[type]:
