@@ -302,3 +302,16 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01
+
+
+def test_a_caption_says_what_print_does_and_the_verdicts_of_claims_about_it(text, content):
+    """The verdicts stand nowhere but in the claims."""
+    about = {
+        claim["id"]: claim["verdict"]
+        for claim in content.studies["one"].claims
+        if "table1" in claim["shown_in"] and not claim["finding"]
+    }
+    block = text.split('id="one/table1"')[1].split("</summary>")[1].split("</p>")[0]
+    told = re.findall(r'href="#one/(C\d+)">\1</a> (?:<abbr[^>]*>)?([a-z ]+)', block)
+    assert "In print: " in block
+    assert dict(told) == about != {}

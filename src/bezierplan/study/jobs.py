@@ -266,13 +266,24 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: title, what the paper says of its own, and the repeats in
-    force. The page has the settings of each method, and the verdicts of claims about it.
+    """The caption of a table or figure: title, what the paper says of its own, and the runs behind
+    it. The page has the settings of each method, and the verdicts of claims.
     """
+    title = (study.tables.get(artefact) or study.figures[artefact]).title
+    words = says(study, artefact)
+    parts = [title, words and f"In print: {words}", behind(study, artefact, scale)]
+    return ". ".join(filter(None, parts)) + "."
+
+
+def says(study: Study, artefact: str) -> str:
+    """What the paper says of its table or figure."""
+    return study.layout[artefact].says if artefact in study.layout else ""
+
+
+def behind(study: Study, artefact: str, scale: str) -> str:
+    """The runs of each method behind a table or figure."""
     spec = study.tables.get(artefact) or study.figures[artefact]
-    layout = study.layout.get(artefact)
-    sentences = [spec.title, f"In print: {layout.says}" if layout else None]
-    parts = getattr(spec, "panels", [spec])
+    parts, told = getattr(spec, "panels", [spec]), []
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if getattr(part, "experiment", None) == experiment]
@@ -280,12 +291,12 @@ def caption(study: Study, artefact: str, scale: str) -> str:
         repeats = listed or content.repeats[scale]
         drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
         layouts = max(each[scale] for each in drawn)
-        sentences.append(
+        told.append(
             f"{experiment}: {'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
             f"run{'s' * (repeats > 1)} of each method on each "
             + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
         )
-    return ". ".join(filter(None, sentences)) + "."
+    return "; ".join(told)
 
 
 # --------------------------------------------------------------------------------------------------

@@ -108,15 +108,16 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
         tables={
             name: TableView(
                 study.tables[name].title,
-                jobs.caption(study, name, scale),
+                jobs.behind(study, name, scale),
                 study.whole(name),
                 jobs.labels_of(study, name),
+                jobs.says(study, name),
             )
             for name in names
             if name in study.tables
         },
         figures={
-            name: FigureView(figure.title, jobs.caption(study, name, scale))
+            name: FigureView(figure.title, jobs.behind(study, name, scale), jobs.says(study, name))
             for name in names
             if (figure := study.figures.get(name))
         },

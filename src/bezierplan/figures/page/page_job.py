@@ -28,19 +28,22 @@ class FigureView(NamedTuple):
     """A figure of the page."""
 
     title: str
-    caption: str
-    """Title, methods, their settings and repeats."""
+    behind: str
+    """Experiments and their repeats."""
+    says: str = ""
+    """What the paper says of its own."""
 
 
 class TableView(NamedTuple):
     """A table of the page."""
 
     title: str
-    caption: str
+    behind: str
     spec: Table
     """With what the one that it extends says of published numbers."""
     labels: dict[str, str]
     """Those with which the table is made."""
+    says: str = ""
 
 
 class ExperimentView(NamedTuple):

@@ -114,12 +114,15 @@ def _method(study: str, name: str, method: Any) -> Row:
 
 
 def _artefact(study: str, name: str, artefact: Any) -> Row:
-    """A table or figure: its title, caption, address, and the path of its files without endings."""
+    """A table or figure: its title, what the paper says of its own, the runs behind it, its
+    address, and the path of its files without endings.
+    """
     return {
         "name": name,
         "address": address(study, name),
         "title": artefact.title,
-        "settings": artefact.caption.removeprefix(f"{artefact.title}.").strip(),
+        "says": artefact.says,
+        "behind": artefact.behind,
         "stem": f"{study}/{tree(name)}/{name}",
         "of_paper": tree(name) == "paper",
     }
