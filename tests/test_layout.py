@@ -75,8 +75,11 @@ def of_table(layout, name, folder):
         least = 0 if counted else columns[column]
         if number and digits(number)[0] != odd.get((row, column), least):
             yield f"{row}, {column}: {number} printed"
-        if own and (digits(own)[0] < least or (float(own) and not counted and digits(own)[1] < 3)):
+        if own and (digits(own)[0] < least or (float(own) and not counted and digits(own)[1] < 2)):
             yield f"{row}, {column}: {own}"
+    for column, cells in ours.items():
+        if len({digits(own)[0] for own in cells if own}) > 1:
+            yield f"{column}: ragged digits"
     dashes = int((printed == "").to_numpy().sum())
     if dashes != layout.form.get("dashes", 0):
         yield f"{dashes} cells without a number"

@@ -16,7 +16,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.results import Results, repeated, select
 from bezierplan.analysis.table_kinds import Pivot
 
-SIGNIFICANT = 3
+SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
 
 
@@ -180,19 +180,19 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
     labels: how names are printed. Column levels are joined into one name, such as `objective value:
-    smooth`; index levels stay columns of the csv file. A table of the paper's form has at least
-    `SIGNIFICANT` digits, except for counts; in any other, where some runs have no value, a column
-    beside the values says how many have one (`_with_counts`).
+    smooth`; index levels stay columns of the csv file. A column of a table of the paper's form has
+    the decimals of the printed one, or as many as its smallest number needs for `SIGNIFICANT`
+    digits; in any other table, where some runs have no value, a column beside the values says how
+    many have one (`_with_counts`).
     """
     table = placed(cells(results, spec, spec.key_columns), spec, list(results.problems))
-    texts = [
-        _printed(
-            statistics.statistic(name, numbers),
-            decimals,
-            SIGNIFICANT if spec.printed and name != "count" else 0,
-        )
-        for name, numbers, decimals in zip(table["statistic"], table["numbers"], table["decimals"])
-    ]
+    values = [statistics.statistic(*each) for each in zip(table["statistic"], table["numbers"])]
+    decimals = table["decimals"]
+    if spec.printed:
+        counted = table["statistic"] == "count"
+        needed = map(_decimals, values, decimals, counted)
+        decimals = pd.Series([*needed], table.index).groupby(table["table_column"]).transform("max")
+    texts = ["" if np.isnan(each) else f"{each:.{n}f}" for each, n in zip(values, decimals)]
     titles = [entry.label for entry in spec.values]
     rows, heads = (
         table.drop_duplicates(place)
@@ -268,12 +268,10 @@ def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _printed(number: float, decimals: int, significant: int) -> str:
-    """A number with the given decimals, more if it needs them for its significant digits; empty for
-    NaN.
+def _decimals(number: float, decimals: int, counted: bool) -> int:
+    """The given decimals, or more if a number, unless it is counted, needs them for its significant
+    digits.
     """
-    if np.isnan(number):
-        return ""
-    if significant and number:
-        decimals = max(decimals, significant - 1 - math.floor(math.log10(abs(number))))
-    return f"{number:.{decimals}f}"
+    if counted or not number or np.isnan(number):
+        return decimals
+    return max(decimals, SIGNIFICANT - 1 - math.floor(math.log10(abs(number))))
