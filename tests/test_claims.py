@@ -355,18 +355,33 @@ def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     assert approximate["verdict"] == resampled["verdict"] == "supported"
 
 
-@pytest.mark.parametrize("n", [100, 300])
-def test_both_ends_of_an_interval_of_an_effect(n):
-    """Of two means of n normal values with the standard deviations 1 and 2: 1.96 standard errors
-    away, resampled or not.
+@pytest.mark.parametrize(
+    ("statistic", "factor", "n", "near"),
+    [
+        ("mean", 1, 100, 0.1),
+        ("mean", 1, 300, 0.01),
+        ("std", 0.5, 100, 0.2),
+        ("std", 0.5, 300, 0.05),
+    ],
+)
+def test_both_ends_of_an_interval_of_an_effect(statistic, factor, n, near):
+    """Of two means, or standard deviations, of n normal values with the standard deviations 1 and
+    2: 1.96 standard errors away, resampled or not.
     """
     row = judged(
-        LOWER | {"statistic": "mean"},
+        LOWER | {"statistic": statistic},
         table({"a": sample("a", 0, n=n), "b": sample("b", 1, n=n, std=2)}),
     )
-    ends = (row[["low95", "high95"]].to_numpy(dtype=float) + 1) / math.sqrt(5 / n)
+    ends = (row[["low95", "high95"]].to_numpy(dtype=float) + 1) / math.sqrt(factor * 5 / n)
     assert row["effect"] == pytest.approx(-1)
-    assert ends == pytest.approx([-1.96, 1.96], rel=0.1 if n == 100 else 0.01)
+    assert ends == pytest.approx([-1.96, 1.96], rel=near)
+
+
+def test_rest_leaves_out_variants():
+    runs = table({"a": sample("a", 0), "b": sample("b", 9), "ours": sample("ours", -9)})
+    check = LOWER | {"groups": ["a"], "than": ["rest"]}
+    assert judged(check, runs, variant_of={"ours": "a"})["verdict"] == "supported"
+    assert judged(check, runs)["verdict"] == "partly"
 
 
 def test_extremes_need_the_size_of_the_papers_experiment():

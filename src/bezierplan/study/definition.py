@@ -65,6 +65,14 @@ class Study(Experiments, ArtefactsFile):
             self.workspace_of(name).origin == "reconstructed" for name in problems if name in shown
         )
 
+    def own_methods(self, experiment: str, artefact: str) -> list[str]:
+        """The methods of an experiment in a table or figure that selects none: without variants,
+        where it is one of the paper's.
+        """
+        of_paper = tree(artefact) == PAPER or artefact in self.with_published()
+        methods = self.experiments[experiment].methods
+        return [name for name in methods if not (of_paper and name in self.variants())]
+
     def with_published(self) -> dict[str, Pivot]:
         """The tables of runs that have published numbers."""
         return {name: table for name, table in self.compared().items() if table.published}

@@ -144,13 +144,14 @@ def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
             return {}
         methods = study.methods_of(spec.experiment)
         if spec.printed:
-            own = study.experiments[spec.experiment].methods
-            methods = one_or_list(spec.where.get("method", own))
+            methods = one_or_list(
+                spec.where.get("method", study.own_methods(spec.experiment, artefact))
+            )
         return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
     for panel in study.figures[artefact].panels:
         if name := getattr(panel, "experiment", None):
-            methods = panel.where.get("method", study.experiments[name].methods)
+            methods = panel.where.get("method", study.own_methods(name, artefact))
             needed.setdefault(name, set()).update(one_or_list(methods))
     return {
         name: [method for method in study.methods_of(name) if method in shown]
@@ -198,9 +199,9 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     """The table of a name."""
     spec = study.whole(table)
     experiment = study.experiments[spec.experiment]
-    # The experiment's own methods unless the table selects some: baselines appear only in the
-    # comparison, and there with variants, unless the table has the paper's form.
-    where = {"method": experiment.methods} | spec.where
+    # Baselines appear only in the comparison, and there with variants, unless the table has the
+    # paper's form.
+    where = {"method": study.own_methods(spec.experiment, table)} | spec.where
     if spec.printed:
         where |= spec.primary
     beside = [] if spec.printed else study.methods_of(spec.experiment)

@@ -34,12 +34,13 @@ def unit_of(metric: str, experiments: list[str], material: Material) -> str:
 
 def with_rest(check: Check, claim: Claim, material: Material) -> Check:
     """The check with `rest` replaced by the groups of the claim's artefact that the check does not
-    name.
+    name, without variants of methods: a sentence of the paper is about its own.
     """
     named = check.groups_named
     if REST not in named:
         return check
-    rest = [group for group in _groups_of_artefact(check, claim, material) if group not in named]
+    left_out = {*named, *(material.variant_of if check.cells == "method" else ())}
+    rest = [each for each in _groups_of_artefact(check, claim, material) if each not in left_out]
     return check.but(
         **{
             key: _filled(getattr(check, key), rest)

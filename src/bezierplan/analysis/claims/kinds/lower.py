@@ -72,7 +72,7 @@ class Options(Comparing):
         "place of groups and than",
     )
     direction: Literal["lower", "higher"] = Field(description=SIDE)
-    statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field(
+    statistic: Literal["rank", "mean", "median", "std", "iqr", "range", "min", "max"] = Field(
         "rank", description=STATISTIC
     )
     least: Positive = Field(
