@@ -49,7 +49,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A claim", Claim),
         ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
     ],
-    "assumptions": [("An assumption", claims.Assumption)],
+    "assumptions": [("The file", claims.AssumptionsFile), ("An assumption", claims.Assumption)],
 }
 """File -> its tables: what stands above, and the model of a mapping or those of its kinds."""
 

@@ -183,7 +183,7 @@ def models_in(annotation):
     [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)],
 )
 def test_no_key_of_a_file_is_unused(name, model):
-    used = {name, "votes"}.union(
+    used = {name, "votes", "reading_repeats"}.union(
         *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in CLAIMS)
     )
     assert keys_of(model) - used == set()

@@ -10,10 +10,6 @@ from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema.model import one_or_list
 
-READ = 100
-"""Runs of each method on each problem that score a reading; where layouts are drawn, in `LAYOUTS`
-together, and in each no more than the paper's.
-"""
 LAYOUTS, FEWER = 30, 10
 """Layouts that score a reading where a printed number is of one of them, and where it is a mean
 over several.
@@ -66,12 +62,17 @@ def voting(
 
 
 def experiment(
-    chunks: dict[str, Chunk], tables: list[Pivot], size: int, descriptions: Descriptions
+    chunks: dict[str, Chunk],
+    tables: list[Pivot],
+    size: int,
+    read: int,
+    descriptions: Descriptions,
 ) -> Experiment:
     """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
     world.
 
-    chunks: the first of each method. size: repeats of the paper.
+    chunks: the first of each method. size: repeats of the paper. read: runs of each method on each
+    problem; where layouts are drawn, in `LAYOUTS` together, and in each no more than the paper's.
     """
 
     def shown(column: str, value: Any) -> bool:
@@ -93,6 +94,6 @@ def experiment(
         }
         first = {name: place for name, place in met.items() if place.get("layout", 0) < layouts}
         drawn = any("layout" in place for place in met.values())
-        last = min(READ // LAYOUTS, size) if drawn else READ
+        last = min(max(read // LAYOUTS, 1), size) if drawn else read
         own_chunks[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
     return Experiment(own_chunks, descriptions)

@@ -17,9 +17,8 @@ Columns: study; reading; excluded_by (the place of the paper that excludes it); 
 (standard error by the choice of seeds, by the jackknife over `BLOCKS` parts of the runs); numbers.
 """
 
-import logging
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -35,10 +34,9 @@ from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.guard.interface import check_settings
 from bezierplan.running.inputs import Files
+from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
 from bezierplan.workspaces.problem import Problem
-
-logger = logging.getLogger(__name__)
 
 DISCREPANCY, FREEDOM = 0.03, 4
 WORTH, ANY = 50, 0.05
@@ -204,43 +202,56 @@ class Runner(NamedTuple):
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
     runs: dict[str, pd.DataFrame]
 
-    def results(self, reading: Reading) -> dict[str, Results] | None:
-        """Runs under a reading, by experiment; None if its settings exclude each other."""
-        results = {}
+    def fits(self, reading: Reading) -> bool:
+        """Whether its settings do not exclude each other."""
+        try:
+            for _, chunk in self.chunks(reading):
+                for condition in chunk.conditions():
+                    settings = execution.settings_in(chunk, condition)
+                    check_settings(planner_module(chunk.planner), settings, "")
+        except Fault:
+            return False
+        return True
+
+    def chunks(self, reading: Reading) -> Iterator[tuple[str, Chunk]]:
+        """The chunks under a reading, each with what tells its runs apart from others."""
         for name, each in self.experiments.items():
-            chunks = [under(chunk, reading, self.assumptions) for chunk in each.chunks.values()]
-            try:
-                for chunk in chunks:
-                    for condition in chunk.conditions():
-                        settings = execution.settings_in(chunk, condition)
-                        check_settings(planner_module(chunk.planner), settings, "")
-            except Fault:
-                return None
-            made, bounds = self._world(name, reading, chunks[0].problems)
-            world = "" if made is self.defaults[name][0] else name_of(reading)
-            runs = [self._runs(made, chunk, world) for chunk in chunks]
-            results[name] = joined(pd.concat(runs, ignore_index=True), made, bounds)
+            world = name_of(reading) if self._changed(name, reading) else ""
+            for chunk in each.chunks.values():
+                read = under(chunk, reading, self.assumptions)
+                yield f"{world}: {read}", read
+
+    def results(self, reading: Reading) -> dict[str, Results]:
+        """Runs under a reading, by experiment."""
+        chunks = [*self.chunks(reading)]
+        results = {}
+        for name in self.experiments:
+            own = [(key, chunk) for key, chunk in chunks if chunk.experiment == name]
+            made, bounds = self._world(name, reading, own[0][1].problems)
+            for key, chunk in own:
+                if key not in self.runs:
+                    self.runs[key] = execution.run_chunk(made, chunk)[0].to_pandas()
+            runs = pd.concat([self.runs[key] for key, _ in own], ignore_index=True)
+            results[name] = joined(runs, made, bounds)
         return results
 
-    def _runs(self, maps: dict[str, Problem], chunk: Chunk, world: str) -> pd.DataFrame:
-        """Runs of a chunk, made once in a world."""
-        name = f"{world}: {chunk}"
-        if name not in self.runs:
-            self.runs[name] = execution.run_chunk(maps, chunk)[0].to_pandas()
-        return self.runs[name]
-
-    def _world(
-        self, experiment: str, reading: Reading, names: Iterable[str]
-    ) -> tuple[dict[str, Problem], pd.DataFrame]:
-        """Problems under a reading, and their bounds."""
+    def _changed(self, experiment: str, reading: Reading) -> dict[str, dict[str, Any]]:
+        """The descriptions of workspaces that a reading changes."""
         described = self.experiments[experiment].descriptions
-        changed = {
+        return {
             name: described.workspaces[name] | {key: reading[each.id]}
             for each in self.assumptions
             if each.id in reading
             for name, key in each.workspaces.items()
             if name in described.workspaces
         }
+
+    def _world(
+        self, experiment: str, reading: Reading, names: Iterable[str]
+    ) -> tuple[dict[str, Problem], pd.DataFrame]:
+        """Problems under a reading, and their bounds."""
+        described = self.experiments[experiment].descriptions
+        changed = self._changed(experiment, reading)
         if not changed:
             return self.defaults[experiment]
         wanted = {name: described.problems[name] for name in names}
@@ -266,13 +277,14 @@ def of_study(study: str, voting: list[Quantity], runner: Runner) -> pd.DataFrame
     """The scores of the readings of a study."""
     assumptions, printed = runner.assumptions, _of_paper(voting)
     excluding = {each.id: each.excluded_by for each in assumptions if each.excluded_by}
-    rows = []
-    for reading in listed(assumptions):
-        results = runner.results(reading)
-        if results is None:
-            continue
-        logger.info("%s", name_of(reading))
-        score, error = scored(voting, printed, measured(voting, results))
+    rows, readings = [], [each for each in listed(assumptions) if runner.fits(each)]
+    sizes = {key: chunk.runs for each in readings for key, chunk in runner.chunks(each)}
+    for number, reading in enumerate(readings, 1):
+        done = sum(sizes[key] for key in runner.runs)
+        # Each may take minutes, so whoever waits sees it in the terminal.
+        place = f"{study}: reading {number} of {len(readings)}, {name_of(reading)}"
+        log.say(f"{place}: {done} of {sum(sizes.values())} runs done")
+        score, error = scored(voting, printed, measured(voting, runner.results(reading)))
         rows.append(
             {
                 "study": study,

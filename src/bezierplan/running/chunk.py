@@ -58,6 +58,12 @@ class Chunk(NamedTuple):
         return list(conditions(list(self.problems), self.vary))
 
     @property
+    def runs(self) -> int:
+        """How many runs it makes."""
+        first, last = self.repeats
+        return len(self.conditions()) * (last - first)
+
+    @property
     def name(self) -> str:
         """What the ids of its runs have in common, with a star for conditions."""
         return f"{self.study}/{self.experiment}/*/{self.method}"

@@ -433,6 +433,8 @@ class Checks:
             check_known(name, study.workspaces, "workspace")
             own = study.workspaces[name]
             check_known(key, own.plain(), f"workspace: {name}")
+            if (used := own.plain()[key]) != assumption.default:
+                raise Fault(f"default: {assumption.default}: expected {used}, which {name} has")
             for value in assumption.alternatives:
                 with self.at("alternatives", str(value), name):
                     self.names(type(own).model_validate(own.plain() | {key: value}))

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import (
+    Count,
     Line,
     Metric,
     Model,
@@ -21,6 +22,7 @@ from bezierplan.schema.model import (
     listed,
     mapping_or,
     matching,
+    shown,
     wrong,
 )
 from bezierplan.study.experiments import ProblemName
@@ -82,6 +84,11 @@ class Assumption(Model):
     def _check_setting(self) -> "Assumption":
         if self.setting is None and self.default is None:
             raise wrong("default: missing key; the value that runs use, unless it is a setting's")
+        if self.setting is not None and self.default is not None:
+            raise wrong(
+                f"default: {shown(self.default)}: expected none beside a setting, whose value "
+                "stands in experiments.yaml"
+            )
         if self.setting is None and self.model_fields_set & {
             "methods",
             "problems",
@@ -98,6 +105,11 @@ class AssumptionsFile(Model):
     """The file."""
 
     assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)
+    reading_repeats: Count = Field(
+        100,
+        description="how many runs of each method under each condition score a reading, a whole "
+        "number; fewer where layouts are drawn",
+    )
     votes: dict[Name, dict[Metric, Where]] = Field(
         {},
         description="table → metric → the printed numbers that score readings (`snakemake "

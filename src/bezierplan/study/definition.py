@@ -24,6 +24,7 @@ class Study(Experiments, ArtefactsFile):
     claims: Sequence[Claim] = ()
     assumptions: Sequence[Assumption] = ()
     votes: dict
+    reading_repeats: int
     layout: Mapping[str, Layout] = {}
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:

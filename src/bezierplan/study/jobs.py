@@ -355,6 +355,7 @@ def readings(study: Study, scale: str) -> Readings:
             {method: job(study, name, method, scale, 0) for method in content.methods},
             [each for each in tables.values() if each.experiment == name],
             content.repeats["full"],
+            study.reading_repeats,
             problems_job(study, name, scale),
         )
     methods = {method for each in experiments.values() for method in each.chunks}

@@ -108,7 +108,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             study_code.functions([name])
         except (Exception, SystemExit) as error:  # a user's file can fail in any way
             raise Fault(f"{name}: {told(error)}") from None
-    content = {"votes": {}}
+    content = {"votes": {}, "reading_repeats": 0}
     faults, invalid, broken = [], [], []
     for name, model in FILES.items():
         file = folder / f"{name}.yaml"

@@ -77,7 +77,10 @@ GROUPS = (
 )
 THAN = "likewise: what the groups are compared with, each with each"
 SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
-STATISTIC = "the statistic that is compared: rank (left out: this), mean, median, std, iqr, range, min or max"
+STATISTIC = (
+    "the statistic that is compared: rank (left out: this), mean, median, std, iqr, range, min or "
+    "max"
+)
 FAILURES = (
     "what a run without a feasible path counts: drop (left out: this), last (worse than any "
     "success; also runs that do not satisfy a "

@@ -50,9 +50,13 @@ def job(snakemake: Any) -> Iterator[Any]:
         said = str(error) if isinstance(error, PlannerFailure) else told(full_disk(error) or error)
         line = f"{said} (full account: {log})"
         logging.critical(line)
-        # With its end, or what another job says could stand on its line.
-        print(f"{line}\n", end="", file=sys.stderr, flush=True)
+        say(line)
         sys.exit(1)
+
+
+def say(line: str) -> None:
+    """Print a line to stderr, with its end, or what another job says could stand on it."""
+    print(f"{line}\n", end="", file=sys.stderr, flush=True)
 
 
 def report(log: str, line: str) -> None:
@@ -60,7 +64,7 @@ def report(log: str, line: str) -> None:
     line = f"{plain(line)} (log: {log})"
     with suppress(OSError), open(log, "a", encoding="utf-8") as file:
         file.write(f"{LAST}{line}\n")
-    print(f"{line}\n", end="", file=sys.stderr, flush=True)
+    say(line)
 
 
 def full_disk(error: BaseException | None) -> BaseException | None:
