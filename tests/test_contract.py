@@ -42,7 +42,6 @@ SETTINGS = settings_in_force()
 
 WALK = """
 import math
-import random
 from typing import Annotated, Literal
 
 import numpy as np
@@ -97,7 +96,6 @@ FAULTS_OF_RUNS = {
         )
         for name, other in {
             "numpy": "np.random.random()",
-            "python": "random.random()",
             "its own": "KEPT.random()",
             "a kernel": "njit(lambda: np.random.random())()",
         }.items()
@@ -119,7 +117,7 @@ FAULTS_OF_RUNS = {
 ENDS = {
     "an exception": (
         'raise RuntimeError("no\\nway")',
-        "circles: open: line 24 of walk.py: RuntimeError: no way",
+        "circles: open: line 23 of walk.py: RuntimeError: no way",
     ),
     "another type": (
         "history = history.tolist()",

@@ -52,15 +52,25 @@ def gone(process, seconds=20):
     return False
 
 
-def test_start_comes_before_the_first_job_and_once(forks, tmp_path):
-    told = tmp_path / "told"
+def test_what_is_forked_starts_before_the_first_job_again_if_it_was_killed_and_ends_with_us(
+    forks, tmp_path
+):
+    def parent():
+        file = tmp_path / "told"
+        source = "import os; open(snakemake, 'w').write(str(os.getppid()))"
+        assert forks.succeeds("parent.py", source, str(file))
+        return int(file.read_text())
+
     forks.start()
     started = forks.process
     forks.start()
-    assert forks.succeeds(
-        "parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told)
-    )
-    assert int(told.read_text()) == started == forks.process
+    assert parent() == started == forks.process
+    os.kill(started, signal.SIGKILL)
+    assert gone(started)
+    again = parent()
+    assert again != started
+    del forks._control
+    assert gone(again)
 
 
 def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
@@ -115,15 +125,15 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
     )
 
 
-def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd):
+def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(started, capfd):
     for source, told in (
         ("import sys; sys.exit('song.yaml: wrong')", "song.yaml: wrong\n"),
         ("raise ValueError('wrong')", "ValueError: wrong\n"),
         ("def broken(", "SyntaxError"),
     ):
-        assert not forks.succeeds("bad.py", source, None), source
+        assert not started.succeeds("bad.py", source, None), source
         assert told in capfd.readouterr().err
-        assert forks.succeeds("good.py", "pass", None)
+        assert started.succeeds("good.py", "pass", None)
 
 
 UNDER_WAY = (
@@ -168,26 +178,6 @@ def test_many_scripts_at_once(started, tmp_path):
 
 def test_large_object_of_a_script_that_does_not_read_it(started):
     assert started.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
-
-
-def test_next_script_runs_after_the_process_that_is_forked_was_killed(forks, tmp_path):
-    told = tmp_path / "told"
-    source = "import os; open(snakemake, 'w').write(str(os.getppid()))"
-    assert forks.succeeds("parent.py", source, str(told))
-    killed = int(told.read_text())
-    os.kill(killed, signal.SIGKILL)
-    assert gone(killed)
-    assert forks.succeeds("parent.py", source, str(told))
-    assert int(told.read_text()) != killed
-
-
-def test_parent_of_forks_ends_with_them(forks, tmp_path):
-    told = tmp_path / "told"
-    assert forks.succeeds(
-        "parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told)
-    )
-    del forks._control
-    assert gone(int(told.read_text()))
 
 
 def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):

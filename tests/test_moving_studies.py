@@ -99,9 +99,15 @@ def chunk(study):
     return execution.run_chunk(made, job(study, "drives", "mine", "smoke", 0), found)
 
 
-def test_a_reader_s_planner_drives_by_one_line_of_config(tmp_path):
-    study = reading.load([written(tmp_path)])["mystudy"]
-    runs, times, traces = (table.to_pylist() for table in chunk(study))
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """The study, and its drives."""
+    study = reading.load([written(tmp_path_factory.mktemp("drives"))])["mystudy"]
+    return study, chunk(study)
+
+
+def test_a_reader_s_planner_drives_by_one_line_of_config(driven):
+    runs, times, traces = (table.to_pylist() for table in driven[1])
     assert [run["id"] for run in runs] == [
         f"mystudy/drives/across/mine/{repeat}" for repeat in range(3)
     ]
@@ -117,9 +123,9 @@ def test_a_reader_s_planner_drives_by_one_line_of_config(tmp_path):
     assert any(run["feasible"] for run in runs)
 
 
-def test_equal_seeds_give_equal_drives(tmp_path):
-    study = reading.load([written(tmp_path)])["mystudy"]
-    one, other = chunk(study), chunk(study)
+def test_equal_seeds_give_equal_drives(driven):
+    study, one = driven
+    other = chunk(study)
     for number in (0, 2):
         pd.testing.assert_frame_equal(one[number].to_pandas(), other[number].to_pandas())
     stored = one[0].to_pylist()[1]
@@ -144,19 +150,19 @@ def test_a_resume_without_a_state_is_told(tmp_path):
         chunk(reading.load([home])["mystudy"])
 
 
-def test_a_drive_that_is_made_again_has_the_path_of_its_row(tmp_path):
-    study = reading.load([written(tmp_path)])["mystudy"]
+def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven):
+    study, (runs, *_) = driven
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     described = job(study, "drives", "mine", "smoke", 0)
-    run = chunk(study)[0].to_pylist()[1]
+    run = runs.to_pylist()[1]
     ride, _ = execution.redriven(described, run, made["across"], found["across"])
     assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
     with pytest.raises(ValueError, match="its rerun ends in another path"):
         execution.redriven(described, run | {"repeat": 0}, made["across"], found["across"])
 
 
-def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):
-    study = reading.load([written(tmp_path)])["mystudy"]
+def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(driven, tmp_path):
+    study, _ = driven
     file = tmp_path / "drive.gif"
     animation.save_run(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
     assert file.stat().st_size < 500_000

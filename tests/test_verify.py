@@ -191,14 +191,6 @@ def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, t
     assert places == {"bend": "elsewhere/bend"}
 
 
-def test_an_edit_of_the_page_is_named(results, capsys):
-    file = results / "index.html"
-    file.write_text(file.read_text().replace("numba", "number", 1))
-    status, lines, _ = verified(capsys, results)
-    assert status == 1
-    assert lines[0].startswith(f"{file}: all bytes: SHA-256: stored ")
-
-
 def test_a_list_that_is_none_and_a_missing_file_are_one_line(results, capsys):
     (results / RUNS).unlink()
     status, lines, _ = verified(capsys, results)
@@ -213,12 +205,14 @@ def test_a_list_that_is_none_and_a_missing_file_are_one_line(results, capsys):
 
 
 def test_a_claim_or_a_bound_that_was_edited_together_with_the_list_is_named(results, capsys):
-    """And so is the list itself, by the page, which shows its digest."""
+    """And so is the page, which no list has."""
     bounds, claims = "bend/problems/bends.bounds.parquet", "bend/claims.csv"
     edited(results / bounds, "bound", lambda values: [value + 0.1 for value in values])
     listed(results, bounds)
     (results / claims).write_text((results / claims).read_text().replace("shorter", "longer"))
     listed(results, claims)
+    page = results / "index.html"
+    page.write_text(page.read_text().replace("numba", "number", 1))
     status, lines, _ = verified(capsys, results)
     assert status == 1
     for name in (bounds, claims, "index.html"):
@@ -267,15 +261,10 @@ def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, ca
 ALIKE = "repeats have the same history and path; a planner draws its random numbers from the rng"
 SLIPS = {
     "a seed of its own": ("rng = np.random.default_rng(42)", ALIKE),
-    "a generator that is reset": ("rng.bit_generator.state = np.random.PCG64(1).state", ALIKE),
     "random numbers of another module": ("np.random.seed(1); rng = np.random", ALIKE),
     "the best of all runs": (
         "best = globals().setdefault('kept', []); best.append(rng.normal())\n"
         "    rng = type('', (), {'normal': lambda *_: min(best)})",
-        "nothing kept from an earlier run",
-    ),
-    "a generator of its module": (
-        "rng = globals().setdefault('kept', np.random.default_rng(1))",
         "nothing kept from an earlier run",
     ),
     "an order of words": (
