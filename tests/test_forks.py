@@ -125,15 +125,15 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
     )
 
 
-def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(started, capfd):
+def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd):
     for source, told in (
         ("import sys; sys.exit('song.yaml: wrong')", "song.yaml: wrong\n"),
         ("raise ValueError('wrong')", "ValueError: wrong\n"),
         ("def broken(", "SyntaxError"),
     ):
-        assert not started.succeeds("bad.py", source, None), source
+        assert not forks.succeeds("bad.py", source, None), source
         assert told in capfd.readouterr().err
-        assert started.succeeds("good.py", "pass", None)
+        assert forks.succeeds("good.py", "pass", None)
 
 
 UNDER_WAY = (
