@@ -109,7 +109,7 @@ def test_a_claimed_path_has_no_sample_inside_an_obstacle_however_fine(seed):
 
 
 def chord(x, y, x_end, y_end, grid):
-    return bca._collisions(np.array([x, x_end]), np.array([y, y_end]), grid.occupied)
+    return bca.collisions(np.array([x, x_end]), np.array([y, y_end]), grid.occupied)
 
 
 @pytest.mark.parametrize(

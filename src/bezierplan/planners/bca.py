@@ -409,12 +409,12 @@ def _measure(genes, cells, curve, scratch, with_clearance):
     length = 0.0
     for s in range(samples - 1):
         length += chords[s]
-    bad = _collisions(x, y, cells.occupied)
+    bad = collisions(x, y, cells.occupied)
     return length, bad, _clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
 
 
 @allocation_free
-def _collisions(x, y, occupied):
+def collisions(x, y, occupied):
     """Number of samples that lie inside an occupied cell or end a chord that passes through one
     between its ends. Touching is allowed.
     """

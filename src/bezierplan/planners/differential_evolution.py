@@ -1,0 +1,207 @@
+"""Differential evolution of a curve's free control points: the generic optimiser beside which the
+papers' searches are measured (Storn and Price 1997, DE/rand/1/bin).
+
+A vector is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points. Curve,
+samples and penalty are those of the method that it is compared with: depth in circles or polygons
+(tharwat2018), samples in occupied cells (song2016), or chords through them (ma2020; elhoseny2017,
+where such a path is deleted). In the kernels coordinates are in cells, or units where there are no
+cells.
+"""
+
+import math
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from bezierplan.geometry import curves
+from bezierplan.kernels import allocation_free, compiled
+from bezierplan.planners import About, Plan, Range
+from bezierplan.planners.bca import collisions
+from bezierplan.planners.parts import penalised
+from bezierplan.planners.parts.genetic import check_curve, copy
+from bezierplan.planners.parts.penalised import FEASIBLE
+from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.workspaces.grid import ON_LINE, Grid
+from bezierplan.workspaces.problem import Path, Problem
+
+workspaces = ("circles", "polygons", "grid")
+
+SOURCE = "Storn and Price 1997"
+
+Curve = IntEnum("Curve", "bezier piecewise_quadratic", start=0)
+Collision = IntEnum("Collision", "samples chords", start=0)
+
+
+class Settings(NamedTuple):
+    """Settings of the search, and of the objective that it shares with a paper's method."""
+
+    population: Annotated[int, Range(4), About("NP, vectors of a generation", SOURCE)]
+    generations: Annotated[int, Range(0), About("generations after the first", SOURCE)]
+    weight: Annotated[float, Range(0, 2), About("F, factor of the difference", SOURCE)]
+    crossover: Annotated[
+        float, Range(0, 1), About("CR, probability of a mutant's coordinate", SOURCE)
+    ]
+    curve: Annotated[Curve, About("kind of curve")]
+    control_points: Annotated[
+        int, Range(1, 60), About("free control points, beside start and target")
+    ]
+    samples: Annotated[
+        int,
+        Range(2),
+        About(
+            "points of the curve tested and measured, uniform in the parameter, both ends included"
+        ),
+    ]
+    collision: Annotated[
+        Collision,
+        About(
+            "the violation on a grid: number of samples in occupied cells, or share of samples that "
+            "lie in one or end a chord through one; elsewhere it is the depth (tharwat2018, eq. 21)"
+        ),
+    ]
+    factor: Annotated[
+        float, Range(0), About("length added for the violation, as a multiple of it")
+    ]
+    penalty: Annotated[float, Range(0), About("added for the violation", unit=UNITS)]
+    surcharge: Annotated[
+        float,
+        Range(0, math.inf),
+        About("added to a path in collision; infinite: it is deleted", unit=UNITS),
+    ]
+
+
+def check(settings: dict) -> None:
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    check_curve(settings, "control_points")
+
+
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest penalised curve through free control points anywhere in the field.
+
+    Parameters
+    ----------
+    problem : Problem
+        On a grid, or among circles or polygons.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: no violation.
+
+    References
+    ----------
+    Storn and Price (1997), Differential evolution, Journal of Global Optimization 11.
+    """
+    world = problem.workspace
+    cells = isinstance(world, Grid)
+    origin, cell = (np.array(world.origin), world.cell) if cells else (np.zeros(2), 1.0)
+    rules = in_cells(settings, cell)
+    ends = (np.array([problem.start, problem.target]) - origin) / cell
+    low, high = (np.reshape(world.bounds, (2, 2)).T - origin) / cell
+    of_ends, of_free = penalised.basis(
+        Curve(rules.curve).name, rules.control_points, rules.samples
+    )
+    sampled = penalised.Objective(
+        ends=ends.T @ of_ends,
+        free=of_free,
+        balls=np.empty((0, 3)) if cells else penalised.round_obstacles(world, 0.0),
+        polygons=penalised.polygonal_obstacles(world, 0.0),
+        penalty=int(penalised.Penalty.multiply),
+        beta=rules.factor,
+    )
+    occupied = np.array(world.occupied) if cells else np.empty((0, 0), dtype=bool)
+
+    starts, moves = rng.spawn(2)
+    low, high = low.repeat(rules.control_points), high.repeat(rules.control_points)
+    x = low + (high - low) * starts.random((rules.population, len(low)))
+    best, history, violation = _evolve(moves, x, low, high, sampled, occupied, rules)
+    free = best.reshape(2, -1).T * cell + origin
+    return Plan(
+        path=Path(Curve(rules.curve).name, np.vstack([problem.start, free, problem.target])),
+        objective=history[-1] * cell,
+        claimed_feasible=violation <= FEASIBLE,
+        evaluations=rules.population * (rules.generations + 1),
+        history=history * cell,
+        stop="generations",
+        extra={},
+    )
+
+
+@compiled
+def _evolve(rng, x, low, high, sampled, occupied, rules):
+    """DE/rand/1/bin: the best vector (2 n,), the lowest cost after each generation (generations +
+    1,), and the best vector's violation.
+
+    x: (population, 2 n), the first generation; overwritten. low, high: (2 n,), the field, at whose
+    border coordinates are held. sampled: the curve's samples, circles and polygons. occupied: bool
+    (rows, columns), (0, 0) where there are no cells.
+    """
+    population, dimensions = x.shape
+    samples = sampled.free.shape[1]
+    scratch = np.empty((2, samples)), np.empty(samples)
+    cost, violation, trials = np.empty(population), np.empty(population), np.empty_like(x)
+    history = np.empty(rules.generations + 1)
+    for i in range(population):
+        cost[i], violation[i] = _cost(x[i], sampled, occupied, rules, scratch)
+    history[0] = cost.min()
+    for generation in range(1, rules.generations + 1):
+        for i in range(population):
+            a, b, c = _three_others(rng, i, population)
+            forced = integer(rng, 0, dimensions)
+            for k in range(dimensions):
+                trials[i, k] = x[i, k]
+                if rng.random() < rules.crossover or k == forced:
+                    mutant = x[a, k] + rules.weight * (x[b, k] - x[c, k])
+                    trials[i, k] = min(max(mutant, low[k]), high[k])
+        for i in range(population):
+            value, violated = _cost(trials[i], sampled, occupied, rules, scratch)
+            if value <= cost[i]:
+                copy(trials[i], x[i])
+                cost[i], violation[i] = value, violated
+        history[generation] = cost.min()
+    best = cost.argmin()
+    return x[best], history, violation[best]
+
+
+@allocation_free
+def _three_others(rng, i, population):
+    """Three different vectors, none of which is i."""
+    a = b = c = i
+    while a == i:
+        a = integer(rng, 0, population)
+    while b == i or b == a:
+        b = integer(rng, 0, population)
+    while c == i or c == a or c == b:
+        c = integer(rng, 0, population)
+    return a, b, c
+
+
+@allocation_free
+def _cost(vector, sampled, occupied, rules, scratch):
+    """Length with what its violation adds, and the violation."""
+    curve, chords = scratch
+    length = penalised.length(vector, sampled, curve, chords)
+    if len(occupied) == 0:
+        violation = penalised.violation(curve, sampled, chords)[0]
+    elif rules.collision == Collision.samples:
+        violation = float(_in_occupied_cells(curve, occupied))
+    else:
+        violation = collisions(curve[0], curve[1], occupied) / curve.shape[1]
+    cost = length * (1.0 + rules.factor * violation) + rules.penalty * violation
+    return cost + (rules.surcharge if violation > FEASIBLE else 0.0), violation
+
+
+@allocation_free
+def _in_occupied_cells(curve, occupied):
+    """Number of samples (2, samples) after the first in occupied cells (song2016, eq. 9)."""
+    rows, columns = occupied.shape
+    bad = 0
+    for s in range(1, curve.shape[1]):
+        row, column = int(curve[1, s] + ON_LINE), int(curve[0, s] + ON_LINE)
+        bad += occupied[min(row, rows - 1), min(column, columns - 1)]
+    return bad
