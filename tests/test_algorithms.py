@@ -1,5 +1,5 @@
-"""The five proposed algorithms as the documentation shows them, each a page of plain Python
-(docs/algorithms): they find what the kernels find, to the last bit.
+"""The five proposed algorithms, and the generic one beside them, as the documentation shows them,
+each a page of plain Python (docs/algorithms): they find what the kernels find, to the last bit.
 """
 
 from pathlib import Path
@@ -30,6 +30,10 @@ CASES = {
         ["equal", "public"],
         [{"chaotic_term": "cognitive"}, {}, {"control_points": 5, "iterations": 9}],
     ),
+    ("differential_evolution", "worth"): (
+        ["equal", "public"],
+        [{}, {"population": 6, "generations": 20, "weight": 0.5, "crossover": 0.5}],
+    ),
     ("ma2020", "environments"): (
         ["environment1", "environment2"],
         [{"population": 20, "generations": 20}, {"samples": 51, "generations": 2}],
@@ -45,11 +49,11 @@ CASES = {
 def test_a_page_of_python_finds_what_the_kernel_finds(case):
     key, experiment = case
     page = planner_module(str(ALGORITHMS / f"{key}.py"))
-    method = page.METHOD.removeprefix(f"{key}/")
-    kernel, settings = planner_module(study(key).planner(method)), study(key).resolved(method)
+    home, _, method = page.METHOD.partition("/")
+    kernel, settings = planner_module(study(home).planner(method)), study(home).resolved(method)
     assert page.plan.__kwdefaults__.items() <= settings.items()
     names, changes = CASES[case]
-    problems = [built(study(key), experiment, name) for name in names]
+    problems = [built(study(home), experiment, name) for name in names]
     for changed in changes:
         for seed in SEEDS:
             problem = problems[seed % len(problems)]

@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import baseline_comparison, metrics
+from bezierplan.analysis import baseline_comparison, measures, metrics
 from bezierplan.analysis.results import Results
 from bezierplan.papers.elhoseny2017 import metrics as elhoseny2017
 from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
 SQUARE_CORNER = ("polyline", [0.0, 0, 1, 0, 1, 1])
 STRAIGHT = ("polyline", [0.0, 0, 2, 0])
@@ -32,6 +32,8 @@ def run(condition, method, length, path, *, cpu=1.0, feasible=True):
         "length": length,
         "cpu_s": cpu,
         "feasible": feasible,
+        "bound": 1.0,
+        "evaluations": 1,
     }
     return values | {"path_curve": path[0], "path_points": path[1]}
 
@@ -90,6 +92,28 @@ def test_corners_curve_without_limit_and_a_straight_baseline_is_no_measure():
     assert found.loc["cornered", ["compared", "bent", "curvature"]].tolist() == [3, 1, math.inf]
     assert found.loc["elsewhere", "bent"] == 0
     assert math.isnan(found.loc["elsewhere", "curvature"])
+
+
+def test_a_fast_method_may_start_again_while_a_slow_one_runs():
+    """Of three runs, one of which fails: the median of the best of four."""
+    found = rows(
+        run("a", "base", 10.0, arc(1.0), cpu=4.0),
+        *(run("a", "fast", length, arc(1.0)) for length in (12.0, 11.0, 15.0)),
+        run("a", "fast", 10.0, arc(1.0), feasible=False),
+        run("a", "slow", 11.0, arc(1.0), cpu=4.0),
+    )
+    assert found.loc["slow", ["restarts", "gap", "gap_restarts"]].tolist() == [1, 10.0, 10.0]
+    fast = found.loc["fast"]
+    assert (fast["restarts"], fast["gap"]) == (4, 11.0)
+    assert fast["feasible_restarts"] == 1 - 0.25**4
+    assert fast["gap_restarts"] == 10.0  # 1 - (3 / 4) ** 4 > 1 / 2
+
+
+def test_an_arc_has_the_energy_of_its_angle_over_its_radius():
+    for radius in (0.5, 2.0):
+        path = Path("bezier", np.reshape(arc(radius)[1], (-1, 2)))
+        assert measures.bending_energy(path) == pytest.approx(math.pi / 2 / radius, rel=1e-3)
+    assert measures.bending_energy(Path("polyline", np.reshape(SQUARE_CORNER[1], (-1, 2)))) == 0
 
 
 def test_experiments_are_paired_each_with_its_own_baseline():

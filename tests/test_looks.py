@@ -5,14 +5,11 @@ compare all planners say.
 import itertools
 
 import numpy as np
-import pandas as pd
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from studies import study
 
-from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import kind_module, panel_of
+from bezierplan.figures import style
 from bezierplan.study import jobs
 
 STUDIES = {
@@ -103,29 +100,3 @@ def test_looks_are_declared_once_or_follow_the_planner():
     )
     twice = style.lines(["a", "b"], {"a": "blue", "b": "blue"})
     assert twice[0]["color"] != twice[1]["color"], "two lines in one panel are never alike"
-
-
-METHODS = ["smooth", "coarse", "random"]
-PROFILE = pd.DataFrame(
-    {"method": METHODS, "ratio": [1.0, 1.3, 1.0], "share": [1.0, 0.5, 0.0]}
-).assign(problems=6, solved=6)
-
-
-def note(kind, frame, **keys):
-    """Axes on which a kind has drawn a table, and what it says."""
-    axes = Figure().subplots()
-    panel = panel_of({"kind": kind, "experiment": "all", **keys})
-    return axes, kind_module(kind).draw(axes, frame, sheet.Scene({}, {}, {}, "m"), panel)
-
-
-def test_marks_of_profiles_lie_on_their_lines():
-    """Not before the last step, where the line is lower."""
-    late = pd.concat([PROFILE, PROFILE.head(1).assign(ratio=1.31, share=0.9)])
-    axes, _ = note("performance_profile", late)
-    marks = [line for line in axes.lines if len(line.get_xdata()) == 1]
-    lines = [line for line in axes.lines if len(line.get_xdata()) > 1]
-    assert len(marks) == len(lines) == 3
-    for mark, line in zip(marks, lines):
-        (at,), (height,) = mark.get_xdata(), mark.get_ydata()
-        step = np.searchsorted(line.get_xdata(), at, side="right") - 1
-        assert line.get_ydata()[step] == height

@@ -24,6 +24,18 @@ rule baseline_comparison:
         "../scripts/job.py"
 
 
+# Beside a generic optimiser, which no paper has.
+use rule baseline_comparison as worth with:
+    input:
+        unpack(results(of(jobs.worth))),
+    output:
+        "results/{scale}/worth.csv",
+    log:
+        "results/{scale}/worth.log",
+    params:
+        **params(jobs.worth),
+
+
 rule summary:
     input:
         comparisons=[

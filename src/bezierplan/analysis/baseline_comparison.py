@@ -14,21 +14,32 @@ baseline's runs; the table has the median of these ratios over the conditions. C
 - bent: those of the compared conditions under which the baseline's path bends and has no corners
 - curvature: largest curvature over the baseline's under these conditions, feasible runs only;
   infinite for paths with corners
+- bending: bending energy over the baseline's, likewise
 - cpu: CPU time over the baseline's, all runs
+- gap, gap_low, gap_high: length over that of the exact shortest path, less 1, feasible runs only,
+  and its 95 % bootstrap interval
+- evaluations: paths that a run evaluates
+- restarts: how many runs take the CPU time of one of the method that takes most
+- feasible_restarts, gap_restarts: as feasible and gap, of the shortest free path of so many runs
+  under a condition, medians over the conditions
 """
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics
+from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.results import Results, read
 from bezierplan.running.inputs import Files
+from bezierplan.workspaces.seeds import generator
 
 COLUMNS = (
     *("study", "method", "baseline", "proposed", "conditions", "feasible", "feasible_baseline"),
-    *("compared", "length", "bent", "curvature", "cpu"),
+    *("compared", "length", "bent", "curvature", "bending", "cpu"),
+    *("gap", "gap_low", "gap_high", "evaluations"),
+    *("restarts", "feasible_restarts", "gap_restarts"),
 )
 
 # A path whose largest curvature times its length is below this, in radians, is straight.
@@ -37,32 +48,40 @@ _STRAIGHT = 1e-6
 # In sentences, ratios closer to 1 than this are equal to it.
 EQUAL = 1e-3
 
+RATIOS = ("length", "curvature", "bending", "cpu")
+"""Columns that are ratios to the baseline's."""
+
 BASELINE = "the exact shortest path with rounded corners"
 """What the baseline is, in words."""
 
 
-def measured(experiments: dict[str, Results], baseline: str) -> pd.DataFrame:
+def measured(
+    experiments: dict[str, Results], baseline: str, with_baseline: bool = False
+) -> pd.DataFrame:
     """One row for each method of some experiments, in all of which the baseline runs; `COLUMNS` but
     for the study.
+
+    with_baseline: whether the baseline has a row too.
     """
     medians = pd.concat(
         [_medians(results).assign(experiment=name) for name, results in experiments.items()],
         ignore_index=True,
     )
     of_baseline = medians["method"] == baseline
-    pairs = medians[~of_baseline].merge(
+    pairs = medians[~of_baseline | with_baseline].merge(
         medians[of_baseline], on=["experiment", "condition"], suffixes=("", "_baseline")
     )
     bent = np.isfinite(pairs["curvature_baseline"]) & (
         pairs["curvature_baseline"] * pairs["length_baseline"] > _STRAIGHT
     )
-    pairs["curvature_baseline"] = pairs["curvature_baseline"].where(bent)
-    for name in ("length", "curvature", "cpu"):
+    for name in ("curvature", "bending"):
+        pairs[f"{name}_baseline"] = pairs[f"{name}_baseline"].where(bent)
+    for name in RATIOS:
         pairs[name] /= pairs[f"{name}_baseline"]
     methods = pairs.groupby("method", sort=False)
     sums, counts = methods.sum(numeric_only=True), methods.count()
     rows = (
-        methods[["length", "curvature", "cpu"]]
+        methods[[*RATIOS, "evaluations"]]
         .median()
         .assign(
             baseline=baseline,
@@ -73,13 +92,46 @@ def measured(experiments: dict[str, Results], baseline: str) -> pd.DataFrame:
             bent=counts["curvature"],
         )
     )
-    return rows.reset_index().reindex(columns=COLUMNS[1:])
+    restarts = (rows["cpu"].max() / rows["cpu"]).astype(int)
+    gaps = {name: _gaps(experiments, name, restarts[name]) for name in rows.index}
+    rows = rows.join(pd.DataFrame.from_dict(gaps, orient="index"))
+    return rows.reset_index(names="method").reindex(columns=COLUMNS[1:])
+
+
+def _gaps(experiments: dict[str, Results], method: str, restarts: int) -> dict[str, float]:
+    """The columns about gaps of a method."""
+    values = pd.concat(
+        pd.DataFrame(
+            {
+                "condition": name + "/" + own["condition"],
+                "gap": metrics.values(own, "gap", found.problems),
+            }
+        )
+        for name, found in experiments.items()
+        for own in [found.runs[found.runs["method"] == method]]
+    )
+    free = np.sort(values["gap"].dropna())
+    low, high = statistics.interval("median", free, generator(f"gap/{method}"))
+    # The shortest of k runs is below its median with the chance 1/2, so a single run is with the
+    # chance 1 - 2 ** (-1 / k).
+    conditions = values.fillna({"gap": np.inf}).groupby("condition")["gap"]
+    best = conditions.agg(np.quantile, 1 - 0.5 ** (1 / restarts), method="inverted_cdf")
+    failing = conditions.agg(lambda gaps: np.isinf(gaps).mean())
+    return {
+        "gap": np.median(free) if len(free) else math.nan,
+        "gap_low": low,
+        "gap_high": high,
+        "restarts": restarts,
+        "feasible_restarts": (1 - failing**restarts).mean(),
+        "gap_restarts": best.median(),
+    }
 
 
 def of_studies(
     baselines: Mapping[str, tuple[str, str | None]],
     repeats: Mapping[str, int],
     files: Mapping[str, Files],
+    with_baseline: bool = False,
 ) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
@@ -93,7 +145,7 @@ def of_studies(
             for place, number in repeats.items()
             if place.startswith(f"{study}/")
         }
-        rows = measured(experiments, baseline)
+        rows = measured(experiments, baseline, with_baseline)
         tables.append(rows.assign(study=study, proposed=rows["method"] == proposed))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
@@ -108,12 +160,14 @@ def _medians(results: Results) -> pd.DataFrame:
     values = runs[["condition", "method"]].assign(
         length=metrics.values(runs, "length", problems),
         curvature=metrics.values(runs, "max_curvature", problems).mask(cornered, np.inf),
+        bending=metrics.values(runs, "bending_energy", problems).mask(cornered, np.inf),
+        evaluations=runs["evaluations"],
         cpu=runs["cpu_s"],
         free=runs["feasible"].astype(bool),
     )
     groups = values.groupby(["condition", "method"], sort=False)
     return (
-        groups[["length", "curvature", "cpu"]]
+        groups[[*RATIOS, "evaluations"]]
         .median()
         .join(groups["free"].agg(free="sum", runs="count"))
         .reset_index()

@@ -317,6 +317,8 @@ class BaselineComparison(Job):
     """By study, and the method that its paper proposes."""
     repeats: dict[str, int]
     """By study/experiment."""
+    with_baselines: bool = False
+    """Whether baselines have rows too."""
 
     def run(self, input_files, output_files, threads):
         """Measure the methods."""
@@ -324,7 +326,10 @@ class BaselineComparison(Job):
         from bezierplan.running import inputs
 
         rows = baseline_comparison.of_studies(
-            self.baselines, self.repeats, inputs.experiments(self.shows, input_files)
+            self.baselines,
+            self.repeats,
+            inputs.experiments(self.shows, input_files),
+            self.with_baselines,
         )
         rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 

@@ -19,7 +19,7 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
 AUDIT, READINGS = "audit.csv", "readings.csv"
-BASELINE_COMPARISON, WHOLES = "baseline_comparison.csv", "wholes.csv"
+BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 SCALES = {
     "full": "the papers' own numbers of runs.",
@@ -42,7 +42,7 @@ def write(
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
-    for name in ("numbers.csv", BASELINE_COMPARISON, WHOLES):
+    for name in ("numbers.csv", BASELINE_COMPARISON, WORTH, WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:

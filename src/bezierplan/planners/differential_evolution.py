@@ -14,7 +14,6 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.bca import collisions
@@ -57,14 +56,12 @@ class Settings(NamedTuple):
     collision: Annotated[
         Collision,
         About(
-            "the violation on a grid: number of samples in occupied cells, or share of samples that "
-            "lie in one or end a chord through one; elsewhere it is the depth (tharwat2018, eq. 21)"
+            "the violation on a grid: the number of samples in occupied cells, or the share that "
+            "lie in one or end a chord through one; elsewhere the depth of tharwat2018, eq. 21"
         ),
     ]
-    factor: Annotated[
-        float, Range(0), About("length added for the violation, as a multiple of it")
-    ]
-    penalty: Annotated[float, Range(0), About("added for the violation", unit=UNITS)]
+    factor: Annotated[float, Range(0), About("length added for the violation, as a multiple of it")]
+    collision_penalty: Annotated[float, Range(0), About("added for the violation", unit=UNITS)]
     surcharge: Annotated[
         float,
         Range(0, math.inf),
@@ -103,9 +100,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     rules = in_cells(settings, cell)
     ends = (np.array([problem.start, problem.target]) - origin) / cell
     low, high = (np.reshape(world.bounds, (2, 2)).T - origin) / cell
-    of_ends, of_free = penalised.basis(
-        Curve(rules.curve).name, rules.control_points, rules.samples
-    )
+    of_ends, of_free = penalised.basis(Curve(rules.curve).name, rules.control_points, rules.samples)
     sampled = penalised.Objective(
         ends=ends.T @ of_ends,
         free=of_free,
@@ -174,9 +169,9 @@ def _three_others(rng, i, population):
     a = b = c = i
     while a == i:
         a = integer(rng, 0, population)
-    while b == i or b == a:
+    while b in (i, a):
         b = integer(rng, 0, population)
-    while c == i or c == a or c == b:
+    while c in (i, a, b):
         c = integer(rng, 0, population)
     return a, b, c
 
@@ -192,7 +187,7 @@ def _cost(vector, sampled, occupied, rules, scratch):
         violation = float(_in_occupied_cells(curve, occupied))
     else:
         violation = collisions(curve[0], curve[1], occupied) / curve.shape[1]
-    cost = length * (1.0 + rules.factor * violation) + rules.penalty * violation
+    cost = length * (1.0 + rules.factor * violation) + rules.collision_penalty * violation
     return cost + (rules.surcharge if violation > FEASIBLE else 0.0), violation
 
 

@@ -207,6 +207,11 @@ class BaselineComparison(Model):
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"
     )
+    worth: ExperimentName = Field(
+        None,
+        description="the experiment in which the methods stand beside a generic optimiser: "
+        "a row of `worth.csv` for each",
+    )
 
 
 class Paper(Model):

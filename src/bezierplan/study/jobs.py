@@ -395,16 +395,40 @@ def audit(study: Study, scale: str) -> Audit:
 
 def baseline_comparison(studies: Studies, scale: str) -> BaselineComparison:
     """The studies that name a baseline."""
+    compared = {
+        key: study.baseline_comparison.experiments
+        for key, study in studies.items()
+        if study.baseline_comparison
+    }
+    return _beside_baselines(studies, scale, compared)
+
+
+def worth(studies: Studies, scale: str) -> BaselineComparison:
+    """The studies that have a generic optimiser beside their methods."""
+    compared = {
+        key: [study.baseline_comparison.worth]
+        for key, study in studies.items()
+        if study.baseline_comparison and study.baseline_comparison.worth
+    }
+    return _beside_baselines(studies, scale, compared, with_baselines=True)
+
+
+def _beside_baselines(
+    studies: Studies, scale: str, compared: dict[str, list[str]], with_baselines: bool = False
+) -> BaselineComparison:
+    """Methods of experiments beside the baselines; with_baselines: and all baselines."""
     baselines, repeats, shows = {}, {}, {}
-    for key, study in studies.items():
-        if compared := study.baseline_comparison:
-            baselines[key] = (compared.baseline, compared.proposed)
-            for name in compared.experiments:
-                content = study.experiments[name]
-                methods = [*content.methods, compared.baseline]
-                repeats[f"{key}/{name}"] = content.repeats[scale]
-                shows[f"{key}/{name}"] = chunks_of(study, name, methods, scale)
-    return BaselineComparison(baselines, repeats, shows=shows)
+    for key, experiments in compared.items():
+        study, own = studies[key], studies[key].baseline_comparison
+        baselines[key] = (own.baseline, own.proposed)
+        for name in experiments:
+            content = study.experiments[name]
+            methods = [*content.methods, own.baseline]
+            repeats[f"{key}/{name}"] = content.repeats[scale]
+            shows[f"{key}/{name}"] = chunks_of(
+                study, name, study.methods_of(name) if with_baselines else methods, scale
+            )
+    return BaselineComparison(baselines, repeats, with_baselines, shows=shows)
 
 
 def summary(studies: Studies, scale: str) -> Summary:
