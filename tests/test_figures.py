@@ -334,12 +334,18 @@ def test_paths_side_by_side():
     assert "0 of 1 have a path" in words(drawn(none, panel))
 
 
-def test_a_bare_field_shows_no_path():
-    frame = of_run(results(), bare=True)
-    assert set(frame["part"]) == {"start", "target"}
-    text = words(drawn(results(), {"kind": "paths", **RUN, "bare": True, "letters": ["S", "T"]}))
+def test_a_problem_is_drawn_without_a_run():
+    place = results().problems["0_15"]
+    (panel,) = panels_of([{"kind": "problem", "problem": "0_15", "letters": ["S", "T"]}])
+    frame = sheet.data([panel], Sources(problems={"0_15": place}))
+    assert frame[["part", "x", "y"]].to_numpy().tolist() == [
+        ["start", 5.0, 5.0],
+        ["target", 35.0, 35.0],
+    ]
+    own = sheet.Scene({}, {}, {}, "unit", places={"0_15": place})
+    text = words(sheet.draw([panel], frame, own, 1))
     assert text.startswith("S | T | ")
-    assert "run" not in text
+    assert "occupied cell" in text
 
 
 def test_only_runs_that_have_some_of_a_metric_are_picked():

@@ -66,6 +66,11 @@ class Figure(Model):
         return sorted({name for each in self.panels if (name := getattr(each, "workspace", None))})
 
     @property
+    def problems(self) -> list[str]:
+        """Names of the problems that it draws without runs."""
+        return sorted({name for each in self.panels if (name := getattr(each, "problem", None))})
+
+    @property
     def rerun(self) -> list[str]:
         """Names of the experiments whose runs it repeats, to draw what no table keeps."""
         return sorted({panel.experiment for panel in self.panels if panel.rerun})

@@ -12,6 +12,7 @@ from bezierplan.figures.page.page_job import ExperimentView, PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
 from bezierplan.running.chunk import Chunk
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces.kinds import modules_of
 
 
@@ -61,6 +62,8 @@ class Figure(Job):
     """Method -> the name of its look."""
     workspaces: dict[str, dict[str, Any]]
     """By name, those that are drawn without runs, as their files describe them."""
+    problems: Descriptions
+    """Those that are drawn without runs."""
     repeats: dict[str, int]
     """By experiment."""
     chunks: dict[str, dict[str, Chunk]]
@@ -77,7 +80,7 @@ class Figure(Job):
             *self.code,
             *(type(panel).__module__ for panel in self.panels),
             *map(module_of, again),
-            *modules_of(self.workspaces),
+            *modules_of(self.workspaces | self.problems.workspaces),
         ]
 
     def run(self, input_files, output_files, threads):
@@ -85,7 +88,7 @@ class Figure(Job):
         from bezierplan.analysis import results, study_code
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
-        from bezierplan.running import inputs
+        from bezierplan.running import inputs, worlds
         from bezierplan.workspaces import files as workspace_files
 
         published = results.published_tables(input_files.sources)
@@ -99,15 +102,16 @@ class Figure(Job):
             name: workspace_files.load(described, Path(self.folder))
             for name, described in self.workspaces.items()
         }
+        places, _ = worlds.build_all(self.problems, Path(self.folder))
         problems = {name: runs.problems for name, runs in experiments.items()}
         drawings = study_code.part_of(
             [name for name in self.code if study_code.part(name) == "panels"]
         )
         scene = sheet.Scene(
-            problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout
+            problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout, places
         )
         functions = study_code.functions(self.code)
-        sources = Sources(experiments, workspaces, functions, published, self.study)
+        sources = Sources(experiments, workspaces, functions, published, self.study, places)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width

@@ -34,7 +34,8 @@ _ROUNDS = 2
 class Scene(NamedTuple):
     """What drawings need in addition to the table of what is drawn.
 
-    problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
+    problems: by experiment, then by name. workspaces, places: workspaces and problems that are
+    drawn without runs, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
     its look (`style.LOOKS`). functions: those of the study that draw, by name. layout: of the
     paper's figure.
@@ -47,6 +48,7 @@ class Scene(NamedTuple):
     looks: Mapping[str, str] = MappingProxyType({})
     functions: Mapping[str, Callable[..., Any]] = MappingProxyType({})
     layout: Layout | None = None
+    places: Mapping[str, Problem] = MappingProxyType({})
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:

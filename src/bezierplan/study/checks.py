@@ -64,6 +64,7 @@ class Checks:
             "experiment": [*study.experiments],
             "workspace": study.workspaces,
             "problem": study.problems,
+            "drawn problem": study.every_problem(),
             "method": study.methods,
             "own method": study.methods.keys() - study.baselines.keys(),
             "baseline": study.baselines,

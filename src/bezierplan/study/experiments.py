@@ -356,26 +356,35 @@ class Experiments(ExperimentsFile):
         return workspace.draws or workspace.gives or workspace.kind
 
     def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
-        """Descriptions of an experiment's problems that have a repeat, by name, as plain values.
-        One with layouts expands to a problem for each layout and number of obstacles.
-        """
+        """Descriptions of an experiment's problems that have a repeat, by name, as plain values."""
         content, described = self.experiments[experiment], {}
         for name in content.problems:
-            if content.runs_of(scale, "problem", name) <= repeat:
-                continue
-            problem = self.problems[name]
-            if problem.layouts is None:
-                described[name] = problem.plain()
-                continue
-            same = problem.plain("layouts", "obstacles")
-            for layout, obstacles in itertools.product(
-                range(problem.layouts[scale]), problem.obstacles
-            ):
-                described[f"{name}_{layout}_{obstacles}"] = same | {
-                    "layout": layout,
-                    "obstacles": obstacles,
-                }
+            if content.runs_of(scale, "problem", name) > repeat:
+                described |= self.layouts_of(name, scale)
         return described
+
+    def layouts_of(self, problem: str, scale: str) -> dict[str, dict]:
+        """Descriptions of a problem, by name, as plain values: one with layouts expands to a
+        problem for each layout and number of obstacles.
+        """
+        content = self.problems[problem]
+        if content.layouts is None:
+            return {problem: content.plain()}
+        same = content.plain("layouts", "obstacles")
+        return {
+            f"{problem}_{layout}_{obstacles}": same | {"layout": layout, "obstacles": obstacles}
+            for layout, obstacles in itertools.product(
+                range(content.layouts[scale]), content.obstacles
+            )
+        }
+
+    def every_problem(self) -> dict[str, dict]:
+        """Descriptions of all problems at scale full."""
+        return {
+            name: described
+            for problem in self.problems
+            for name, described in self.layouts_of(problem, "full").items()
+        }
 
     def described(self, workspace: str) -> dict[str, Any]:
         """The description of a workspace as plain values, with the file of a function that draws

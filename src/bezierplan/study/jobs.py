@@ -32,7 +32,7 @@ from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.definition import Study
-from bezierplan.study.experiments import problems_job
+from bezierplan.study.experiments import descriptions, problems_job
 
 Studies = dict[str, Study]
 
@@ -241,6 +241,9 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
     spec, behind = study.figures[figure], methods_of_artefact(study, figure)
     methods = {method for name in behind for method in study.methods_of(name)}
     homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
+    every = study.every_problem() if spec.problems else {}
+    problems = descriptions(study, {name: every[name] for name in spec.problems})
+    homes += problems.workspaces
     return Figure(
         study=study.key,
         columns=spec.columns,
@@ -250,6 +253,7 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
         labels=labels_of(study, figure),
         looks={name: look for name, look in looks(study).items() if spec.calls or name in methods},
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
+        problems=problems,
         repeats={name: study.experiments[name].repeats[scale] for name in behind},
         chunks={
             name: {method: job(study, name, method, scale, 0) for method in behind[name]}
@@ -258,7 +262,7 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
         unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
         folder=relative(study.folder),
         sources=[
-            *study.maps(spec.workspaces),
+            *study.maps([*spec.workspaces, *problems.workspaces]),
             *(file for file in study.published_files() if spec.draws(Path(file).stem)),
         ],
         shows=shown_by(study, figure, scale),

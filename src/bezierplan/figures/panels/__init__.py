@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from bezierplan.analysis.results import Results
+    from bezierplan.workspaces.problem import Problem
 
 MOST_PANELS = 26
 """Panels of a figure, each of which has a letter."""
@@ -77,9 +78,9 @@ EACH = (
 class Sources:
     """What the panels of a figure draw from.
 
-    results: by experiment. workspaces: by name. functions: those of the study's module, by name.
-    published: all published tables by file name. study: its name, from which with others the runs
-    of panels that plan take their seeds.
+    results: by experiment. workspaces, problems: those drawn without runs, by name. functions:
+    those of the study's module, by name. published: all published tables by file name. study: its
+    name, from which with others the runs of panels that plan take their seeds.
     """
 
     results: Mapping[str, Results] = field(default_factory=dict)
@@ -87,6 +88,7 @@ class Sources:
     functions: Mapping[str, Callable[..., pd.DataFrame]] = field(default_factory=dict)
     published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     study: str = ""
+    problems: Mapping[str, Problem] = field(default_factory=dict)
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
 
     def runs(self, experiment: str, where: dict[str, Any]) -> Results:

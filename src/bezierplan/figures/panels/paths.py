@@ -22,7 +22,6 @@ from bezierplan.geometry import curves
 from bezierplan.schema.model import (
     Column,
     Experiment,
-    Flag,
     Line,
     Metric,
     Model,
@@ -48,9 +47,6 @@ _STEPS = 600
 
 # Widths of the first and of the last of several paths.
 _WIDEST, _NARROWEST = 2.0, 1.0
-
-# How far a letter stands from a place, towards the panel's centre, in points.
-_LETTER_OFFSET = np.array([14, 4])
 
 _CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
@@ -155,16 +151,7 @@ class Options(RunsPanel):
         "length",
         description="with hue, the metric whose value is written for each path; left out: length",
     )
-    bare: Flag = Field(
-        False,
-        description="whether only the workspace with start and target is drawn, true or false",
-    )
-    letters: list[Line] = Field(
-        None,
-        description="what is written next to start and target: a list of two",
-        min_length=2,
-        max_length=2,
-    )
+    letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
     changed_from: Annotated[Line, Names("problem of runs")] = Field(
         None,
         description="the name of another problem of the experiment, on cells as many: those that "
@@ -194,9 +181,6 @@ class Options(RunsPanel):
         exactly_one(self, "experiment", "explicit")
         if "measure" in self.model_fields_set and self.hue is None:
             raise wrong("measure: needs hue")
-        for key in ("explicit", "hue"):
-            if self.bare and key in self.model_fields_set:
-                raise wrong(f"bare: not together with {key}")
         return self
 
 
@@ -245,8 +229,6 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             ("vanished", before, problem.workspace),
         ):
             places[part] = _centres(cells, np.flatnonzero(cells.occupied & ~others.occupied))
-    if options.bare:
-        return table(places).assign(problem=problem.name)
     if options.printed is not None and results.published is not None:
         printed = published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
@@ -311,13 +293,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
         draw_parts(axes, frame, clip=options.view is not None)
-        if options.explicit is None and not options.bare:
+        if options.explicit is None:
             note = _note(frame, unit)
-    for part, letter in zip(workspaces.ENDS, options.letters or ()):
-        end = frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float)
-        inwards = np.sign([np.mean(axes.get_xlim()), np.mean(axes.get_ylim())] - end)
-        place = {"xytext": _LETTER_OFFSET * inwards, "textcoords": "offset points"}
-        axes.annotate(letter, end, weight="bold", zorder=7, ha="center", va="center", **place)
+    workspaces.draw_letters(axes, frame, options.letters)
     if options.view is not None:
         axes.axis(options.view)
     return note

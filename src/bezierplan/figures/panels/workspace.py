@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.amounts import amount
 from bezierplan.figures.panels import Note, Panel, RunsPanel, Sources
-from bezierplan.schema.model import Flag
+from bezierplan.schema.model import Flag, Line
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -47,6 +47,11 @@ _OUTLINE = {
 START = style.mark("s", 7, style.BLACK, label="start", zorder=4.5)
 TARGET = style.mark("*", 12, style.BLACK, label="target", zorder=4.5)
 ENDS = {"start": START, "target": TARGET}
+
+Letters = Annotated[list[Line], Field(min_length=2, max_length=2)]
+LETTERS = "what is written next to start and target: a list of two"
+# How far a letter stands from a place, towards the panel's centre, in points.
+_LETTER_OFFSET = np.array([14, 4])
 
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
 # suffice.
@@ -203,6 +208,15 @@ def scale(axes: Axes, unit: str) -> None:
         axes.locator_params(axis="x", nbins=2)
     axes.set_xlabel(f"x ({unit})")
     axes.set_ylabel(f"y ({unit})")
+
+
+def draw_letters(axes: Axes, frame: pd.DataFrame, letters: list[str] | None) -> None:
+    """Write letters next to start and target, rows of a frame with part, x and y."""
+    for part, letter in zip(ENDS, letters or ()):
+        end = frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float)
+        inwards = np.sign([np.mean(axes.get_xlim()), np.mean(axes.get_ylim())] - end)
+        place = {"xytext": _LETTER_OFFSET * inwards, "textcoords": "offset points"}
+        axes.annotate(letter, end, weight="bold", zorder=7, ha="center", va="center", **place)
 
 
 def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:

@@ -1,0 +1,44 @@
+"""A problem: its workspace with start and target, without any path."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import Note, Panel, Sources
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.schema.model import Line, Names
+from bezierplan.workspaces.problem import Problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+class Options(Panel):
+    problem: Annotated[Line, Names("drawn problem")] = Field(
+        description="the name of a problem, followed by the number of a layout and that of its "
+        "obstacles if it has layouts, such as `case1_0_20`"
+    )
+    letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
+
+    def source(self, sources: Sources) -> Problem:
+        """The problem."""
+        return sources.problems[self.problem]
+
+
+def data(problem: Problem, options: Options) -> pd.DataFrame:
+    """Start and target: part, x, y, problem (its name)."""
+    return workspaces.ends(problem).assign(problem=problem.name)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the rows of `data` in their workspace."""
+    home = scene.places[options.problem].workspace
+    workspaces.shade(axes, workspaces.parts(home))
+    workspaces.scale(axes, home.unit)
+    style.draw_parts(axes, frame, workspaces.ENDS, clip_on=False)
+    workspaces.draw_letters(axes, frame, options.letters)
+    return Note()
