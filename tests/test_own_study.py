@@ -24,6 +24,7 @@ from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan
 
 workspaces = ("circles",)
+extra = ("bent",)
 
 def plan(problem, rng, *, bend: float):
     middle = (np.array(problem.start) + problem.target) / 2
@@ -31,7 +32,7 @@ def plan(problem, rng, *, bend: float):
     path = Path("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
     return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]),
-                stop="one", extra={})
+                stop="one", extra={"bent": float(middle[1])})
 """
 
 NEARBY = "SPREAD = 0.01\n"
@@ -42,6 +43,7 @@ methods:
   low: {planner: bend.py, settings: {bend: 3.0}}
   high: {planner: bend.py, settings: {bend: 5.0}}
   line: {planner: straight_line}
+  lower: {planner: bend.py, settings: {bend: 2.9}, variant_of: low}
 baselines:
   shortest_path: {planner: shortest_path}
 settings: {}
@@ -52,7 +54,7 @@ problems:
 experiments:
   bends:
     problems: [across]
-    methods: [low, high, line]
+    methods: [low, high, line, lower]
     repeats: {smoke: 2, full: 30, extended: 60}
     chunk: {smoke: 2, full: 30, extended: 30}
   again:
@@ -62,8 +64,20 @@ experiments:
     chunk: {smoke: 2, full: 30, extended: 30}
 """
 
+# Some labels are those of columns, of statistics, and of each other.
 ARTEFACTS = """
+labels: {length: length, bent: height}
 tables:
+  shapes:
+    {title: Shapes, labels: {mean: std, std: spread, low: high, high: low},
+    kind: pivot, experiment: bends, published: shapes.csv, index: [method],
+    columns: [value, statistic], where: {method: [low, high]}, values: [
+      {metric: bent, statistic: [min, mean, std], label: bent, decimals: 3},
+      {metric: length, statistic: [max, mean], label: height, decimals: 1}]}
+  shapes_variants: {title: With variants, kind: pivot, extends: shapes, experiment: bends,
+    index: [method], columns: [value, statistic], values: [
+      {metric: bent, statistic: [min, mean, std], label: bent, decimals: 3},
+      {metric: length, statistic: [max, mean], label: height, decimals: 1}]}
   lengths:
     {title: "Lengths </script><b> `x`_ .. include:: bend.py",
     kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value],
@@ -104,6 +118,18 @@ PUBLISHED = f"""problem,method,metric,statistic,n,unit,value
 across,low,length,mean,30,m,{LOW:.2f}
 across,high,length,mean,30,m,8.00
 """
+SHAPES = """method,metric,statistic,n,unit,value
+low,bent,min,30,-,2.981
+low,bent,mean,30,-,3.003
+low,bent,std,30,-,0.012
+low,length,max,30,m,8.9
+low,length,mean,30,m,8.6
+high,bent,min,30,-,4.977
+high,bent,mean,30,-,5.004
+high,bent,std,30,-,0.013
+high,length,max,30,m,9.8
+high,length,mean,30,m,9.7
+"""
 
 
 def snakemake(folder, *words):
@@ -137,6 +163,7 @@ def results(tmp_path_factory):
         "artefacts.yaml": ARTEFACTS,
         "claims.yaml": CLAIMS,
         "published/lengths.csv": PUBLISHED,
+        "published/shapes.csv": SHAPES,
     }.items():
         (study / name).write_text(text)
     snakemake(folder, "all")
@@ -164,7 +191,7 @@ def test_wrong_published_number_is_flagged(results):
 
 
 def test_published_length_below_the_bound_is_audited(results):
-    audit = pd.read_csv(results / "audit.csv")
+    audit = pd.read_csv(results / "audit.csv").query("item == 'lengths'")
     assert audit.set_index("place")["consistent"].to_dict() == {
         f"problem=across, method={method}, metric=length, statistic=mean": method == "low"
         for method in ("low", "high")
@@ -186,7 +213,7 @@ def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results)
     printed = snakemake(folder, "-n", "all")
     near.write_text(NEARBY)
     methods = re.findall(r"^rule runs:.*?method=(\w+)", printed, flags=re.M | re.S)
-    assert sorted(set(methods)) == ["high", "low"]
+    assert sorted(set(methods)) == ["high", "low", "lower"]
 
 
 def test_what_was_verified_is_listed_and_can_be_judged_again(results):
@@ -199,6 +226,32 @@ def test_what_was_verified_is_listed_and_can_be_judged_again(results):
     assert verdict.files == judged["files"]
 
 
+def test_every_printed_number_stands_in_every_file_that_shows_printed_numbers(results):
+    printed = [line.rpartition(",")[2] for line in SHAPES.splitlines()[1:]]
+    compared = pd.read_csv(results / "beyond/shapes.comparison.csv")
+    assert compared["verdict"].notna().sum() == len(printed)
+    shown = pd.read_csv(results / "beyond/shapes.published.csv", index_col=0, dtype=str)
+    assert sorted(shown.to_numpy().ravel()) == sorted(printed)
+    for file in (results / "beyond/shapes.tex", results.parent / "index.html"):
+        assert not [number for number in printed if number not in file.read_text()], file
+
+
+def test_a_variant_stands_beside_the_paper_s_methods_alone(results):
+    tables = [
+        pd.read_csv(results / f"beyond/{name}.csv") for name in ("lengths", "shapes_variants")
+    ]
+    assert ["lower" in {*table["method"]} for table in tables] == [False, True]
+
+
+def test_what_a_job_reads_of_runs_is_an_input_with_its_times(results):
+    printed = snakemake(results.parents[2], "-n", "-F", "all")
+    read = re.findall(r"^rule (?!judgement)\w+:\n +input: (.*/runs/.*)$", printed, flags=re.M)
+    assert len(read) >= 5
+    for files in read:
+        runs = re.findall(r"[^ ,]*/\d+\.parquet", files)
+        assert all(run.replace(".parquet", ".times.parquet") in files for run in runs)
+
+
 def test_figure_shows_the_own_planner(results):
     assert {"low"} == set(pd.read_csv(results / "beyond" / "paths.csv")["method"])
     assert (results / "beyond" / "paths.svg").stat().st_size > 1000
@@ -206,5 +259,5 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert "2 published numbers: 1 in agreement, 1 in disagreement. 2 claims: 1 supp" in summary
-    assert "| bends | 1, 1, 0 | 1 of 2 | 1, 0, 1, 0 |" in summary
+    assert "12 published numbers: 3 in agreement, 3 in disagreement, 6 inconclusive" in summary
+    assert "| bends | 3, 3, 6 | 9 of 12 | 1, 0, 1, 0 |" in summary
