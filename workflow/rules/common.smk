@@ -14,6 +14,8 @@ os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 
+from snakemake.cli import get_argument_parser
+
 from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
@@ -45,7 +47,20 @@ if not config:
 configfile: CONFIG
 
 
-STUDIES = or_exit(lambda: reading.load(reading.read_config(config)))
+def targets():
+    """What Snakemake was asked for, which it tells no workflow while that is read: targets, and
+    of a job on a cluster its study. None of a workflow of which this one is a module.
+    """
+    program = Path(sys.argv[0])
+    if workflow.modifier.namespace or "snakemake" not in (program.name, program.parent.name):
+        return []
+    words, _ = get_argument_parser().parse_known_args(sys.argv[1:])
+    jobs = words.target_jobs or []
+    return [*words.targets, *(dict(job.wildcards).get("study", "all") for job in jobs)]
+
+
+# A target of one study starts without the others.
+STUDIES = or_exit(lambda: reading.load(reading.asked(reading.read_config(config), targets())))
 # Snakemake puts the path of its interpreter into commands unquoted, and a folder may have any name.
 # Planners of studies, which that interpreter reads, are known by now.
 sys.executable = shlex.quote(sys.executable)

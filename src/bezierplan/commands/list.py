@@ -39,12 +39,24 @@ def main(*words: str) -> None:
     names = [Path(study_named(word)).name for word in words]
     for name in names:
         check_known(name, (*KINDS, *NAMES, *loaded), "list")
+    if "metrics" in names:
+        _load_metrics(loaded.values())
     shown = [study for key, study in loaded.items() if key in names] or [*loaded.values()]
     asked = [name for name in names if name not in loaded]
     for heading, rows in listed(shown, asked or [kind for kind in KINDS if kind != "settings"]):
         print(heading)
         for name, text in rows:
             print(f"  {name:28} {text}")
+
+
+def _load_metrics(studies: Iterable[Study]) -> None:
+    """Load the metrics of studies, and name the columns that only their planners have."""
+    from bezierplan.analysis import study_code
+
+    for study in studies:
+        study_code.functions(study.code_for("metrics"))
+        for planner in map(study.planner, study.methods):
+            metrics.add_columns(getattr(planner_module(planner), "extra", ()))
 
 
 def listed(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str, Rows]]:

@@ -2,14 +2,21 @@
 first job starts, and reported in one line (`checked.Fault`).
 """
 
+import contextlib
+import hashlib
+import itertools
+import os
 import re
+import sys
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis import study_code
+import pydantic
+
 from bezierplan.machine.modules import code_of
-from bezierplan.places import STUDIES, TREE, relative
+from bezierplan.places import PACKAGE, STUDIES, TREE, cache_folder, relative
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import parsed, sound_part
@@ -49,6 +56,25 @@ def read_config(config: Mapping[str, Any]) -> Folders:
     return folders
 
 
+def asked(folders: Folders, targets: Iterable[str]) -> Folders:
+    """The studies that targets of the workflow belong to; all, unless each target is a study, or a
+    rule or a file of one.
+    """
+    names = [folder.resolve().name for folder in folders]
+    named = [
+        [
+            name
+            for name in names
+            if target == name
+            or target.startswith(f"{name}_")
+            or re.match(f"results/[^/]+/{re.escape(name)}/", target)
+        ]
+        for target in targets
+    ]
+    wanted = {*itertools.chain(*named)} if named and all(named) else names
+    return {folder: folders[folder] for folder, name in zip(folders, names) if name in wanted}
+
+
 def _with_values(settings: Any) -> Any:
     """Settings of a configuration, which are numbers where they look like it: Snakemake reads those
     of the command line as text.
@@ -68,16 +94,28 @@ FILES = {
 
 
 def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked. Raises Fault."""
-    from bezierplan.study.checks import Checks
-
+    """The studies in folders, by name, read and checked, unless the same was checked before.
+    Raises Fault.
+    """
     studies: dict[str, Study] = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
+        stamp = _stamp(folder, changed)
+        known = stamp and stamp.exists()
+        if not known:
+            _load_code(folder)
         study, faults, lost = _read(folder, changed)
-        if faults := [*faults, *Checks(study, lost).check()]:
-            more = f" (with the configuration's settings: {changed})" if changed else ""
-            raise Fault(*(f"{line}{more}" for line in faults))
+        if not known:
+            from bezierplan.study.checks import Checks
+
+            if faults := [*faults, *Checks(study, lost).check()]:
+                more = f" (with the configuration's settings: {changed})" if changed else ""
+                raise Fault(*(f"{line}{more}" for line in faults))
+            # Without a place to keep it in, it is checked again.
+            if stamp and stamp == _stamp(folder, changed):
+                with contextlib.suppress(OSError):
+                    stamp.parent.mkdir(parents=True, exist_ok=True)
+                    stamp.touch()
         if study.key in studies:
             raise Fault(
                 f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
@@ -87,12 +125,59 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     return studies
 
 
+def _stamp(folder: Path, changed: Mapping[str, Any]) -> Path | None:
+    """The file that says of a study that it was checked and had no fault; None if not all of its
+    folder can be read. Its name is a digest of all that a fault could come from: the files of the
+    study, the settings of a configuration, this package and its libraries.
+    """
+    try:
+        parts = [repr(changed), *_package(), str(folder.resolve()), *_contents(folder)]
+    except OSError:
+        return None
+    return cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+
+
+@cache
+def _package() -> list[str]:
+    """The contents of this package, Python, and when a library beside pydantic came or went."""
+    libraries = Path(pydantic.__file__).parents[1]
+    return [sys.version, f"{libraries} {libraries.stat().st_mtime_ns}", *_contents(PACKAGE)]
+
+
+def _contents(folder: Path) -> list[str]:
+    """All below a folder, but for byte code and what the workflow writes into its working folder:
+    names, where links lead, and digests of files. Raises OSError.
+    """
+    written = [os.path.realpath(name) for name in ("results", ".snakemake")]
+    found = []
+    for path in sorted(folder.rglob("*")):
+        target = Path(os.path.realpath(path))
+        if "__pycache__" not in path.relative_to(folder).parts and not any(
+            map(target.is_relative_to, written)
+        ):
+            content = path.read_bytes() if path.is_file() else b""
+            found.append(f"{path} {target} {hashlib.sha256(content).hexdigest()}")
+    return found
+
+
 def read_study(folder: Path) -> Study:
     """The study in a folder, with each of its files checked on its own. Raises Fault."""
+    _load_code(folder)
     study, faults, _ = _read(folder, {})
     if faults:
         raise Fault(*faults)
     return study
+
+
+def _load_code(folder: Path) -> None:
+    """Load the code of the study in a folder, so that its metrics are known. Raises Fault."""
+    from bezierplan.analysis import study_code
+
+    for name in code_of(folder.resolve().name, relative(folder)).values():
+        try:
+            study_code.functions([name])
+        except (Exception, SystemExit) as error:  # a user's file can fail in any way
+            raise Fault(f"{name}: {told(error)}") from None
 
 
 def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
@@ -102,12 +187,6 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     changes: settings that take the place of those of the same name there; those of one planner are
     taken one by one.
     """
-    key = folder.resolve().name
-    for name in code_of(key, relative(folder)).values():
-        try:
-            study_code.functions([name])
-        except (Exception, SystemExit) as error:  # a user's file can fail in any way
-            raise Fault(f"{name}: {told(error)}") from None
     content = {"votes": {}, "reading_repeats": 0}
     faults, invalid, broken = [], [], []
     for name, model in FILES.items():

@@ -8,7 +8,6 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.geometry import shortest_paths
 from bezierplan.schema.model import Count, Positive
 from bezierplan.workspaces import lattice
 from bezierplan.workspaces.grid import Grid
@@ -50,6 +49,8 @@ def draw(description: dict, problem: dict, name: str) -> Grid:
 
     Raises ValueError if there is none.
     """
+    from bezierplan.geometry import shortest_paths
+
     wanted, corners = description.get("lattice_length"), description["corners"]
     for grid in candidates(description, problem, name):
         ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), corners)
