@@ -24,6 +24,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
+SWARM = {name: value for name, value in THARWAT["settings"].items() if not isinstance(value, dict)}
 # Of the planner's settings.
 SAMPLES, BETA = 100, 100.0
 RANKED = ("table3", "table4", "table5", "table6")
@@ -71,7 +72,7 @@ def test_chaotic_sequences():
 
 
 def test_parameters_of_the_maps_are_those_in_force():
-    assert SEQUENCES["singer_mu"] == THARWAT["settings"]["singer_mu"]
+    assert SEQUENCES["singer_mu"] == SWARM["singer_mu"]
 
 
 def test_gauss_above():
@@ -104,7 +105,7 @@ def test_fitness(name, world, column):
 
 
 def test_fitness_is_that_of_the_planner():
-    settings = THARWAT["settings"] | {"chaotic_term": "none"}
+    settings = SWARM | {"chaotic_term": "none"}
     for seed in range(5):
         plan = chaotic_pso.plan(
             problem("equal"),
@@ -329,7 +330,7 @@ def test_movement_follows_equation_8():
     """The parts of each velocity join head to tail from the particle's place to its next one; C1
     and C2 are the defaults.
     """
-    inertia, c1, c2 = (THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
+    inertia, c1, c2 = (SWARM[name] for name in ("inertia", "c1", "c2"))
     marks = drawing("tharwat2018", "figure2")
     best = marks.loc[marks["group"] == "G 0", "x"].item()
     # Of each particle: place, velocity, its best place, and two random numbers.
@@ -430,7 +431,7 @@ def test_methods_of_tharwat2018():
             assert own == {"chaotic_term": term, "chaotic_map": name} | (
                 {"chaotic_start": 0.6} if name == "tent" else {}
             )
-    frozen = THARWAT["settings"] | THARWAT["methods"]["cpso2_gauss_collapsed"]["settings"]
+    frozen = SWARM | THARWAT["methods"]["cpso2_gauss_collapsed"]["settings"]
     plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(0), **frozen)
     assert plan.extra["zeta_collapsed_at"] == 1
     assert set(plan.history.tolist()) == {plan.objective}

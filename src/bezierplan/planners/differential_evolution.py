@@ -101,7 +101,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ends = (np.array([problem.start, problem.target]) - origin) / cell
     low, high = (np.reshape(world.bounds, (2, 2)).T - origin) / cell
     of_ends, of_free = penalised.basis(Curve(rules.curve).name, rules.control_points, rules.samples)
-    sampled = penalised.Objective(
+    objective = penalised.Objective(
         ends=ends.T @ of_ends,
         free=of_free,
         balls=np.empty((0, 3)) if cells else penalised.round_obstacles(world, 0.0),
@@ -114,7 +114,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     starts, moves = rng.spawn(2)
     low, high = low.repeat(rules.control_points), high.repeat(rules.control_points)
     x = low + (high - low) * starts.random((rules.population, len(low)))
-    best, history, violation = _evolve(moves, x, low, high, sampled, occupied, rules)
+    best, history, violation = _evolve(moves, x, low, high, objective, occupied, rules)
     free = best.reshape(2, -1).T * cell + origin
     return Plan(
         path=Path(Curve(rules.curve).name, np.vstack([problem.start, free, problem.target])),
@@ -128,21 +128,21 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 @compiled
-def _evolve(rng, x, low, high, sampled, occupied, rules):
+def _evolve(rng, x, low, high, objective, occupied, rules):
     """DE/rand/1/bin: the best vector (2 n,), the lowest cost after each generation (generations +
     1,), and the best vector's violation.
 
     x: (population, 2 n), the first generation; overwritten. low, high: (2 n,), the field, at whose
-    border coordinates are held. sampled: the curve's samples, circles and polygons. occupied: bool
-    (rows, columns), (0, 0) where there are no cells.
+    border coordinates are held. objective: of the curve's samples among circles or polygons.
+    occupied: bool (rows, columns), (0, 0) where there are no cells.
     """
     population, dimensions = x.shape
-    samples = sampled.free.shape[1]
+    samples = objective.free.shape[1]
     scratch = np.empty((2, samples)), np.empty(samples)
     cost, violation, trials = np.empty(population), np.empty(population), np.empty_like(x)
     history = np.empty(rules.generations + 1)
     for i in range(population):
-        cost[i], violation[i] = _cost(x[i], sampled, occupied, rules, scratch)
+        cost[i], violation[i] = _cost(x[i], objective, occupied, rules, scratch)
     history[0] = cost.min()
     for generation in range(1, rules.generations + 1):
         for i in range(population):
@@ -154,7 +154,7 @@ def _evolve(rng, x, low, high, sampled, occupied, rules):
                     mutant = x[a, k] + rules.weight * (x[b, k] - x[c, k])
                     trials[i, k] = min(max(mutant, low[k]), high[k])
         for i in range(population):
-            value, violated = _cost(trials[i], sampled, occupied, rules, scratch)
+            value, violated = _cost(trials[i], objective, occupied, rules, scratch)
             if value <= cost[i]:
                 copy(trials[i], x[i])
                 cost[i], violation[i] = value, violated
@@ -177,12 +177,12 @@ def _three_others(rng, i, population):
 
 
 @allocation_free
-def _cost(vector, sampled, occupied, rules, scratch):
+def _cost(vector, objective, occupied, rules, scratch):
     """Length with what its violation adds, and the violation."""
     curve, chords = scratch
-    length = penalised.length(vector, sampled, curve, chords)
+    length = penalised.length(vector, objective, curve, chords)
     if len(occupied) == 0:
-        violation = penalised.violation(curve, sampled, chords)[0]
+        violation = penalised.violation(curve, objective, chords)[0]
     elif rules.collision == Collision.samples:
         violation = float(_in_occupied_cells(curve, occupied))
     else:

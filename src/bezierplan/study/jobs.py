@@ -399,39 +399,38 @@ def audit(study: Study, scale: str) -> Audit:
 
 def baseline_comparison(studies: Studies, scale: str) -> BaselineComparison:
     """The studies that name a baseline."""
-    compared = {
-        key: study.baseline_comparison.experiments
+    experiments = {
+        key: comparison.experiments
         for key, study in studies.items()
-        if study.baseline_comparison
+        if (comparison := study.baseline_comparison)
     }
-    return _beside_baselines(studies, scale, compared)
+    return _beside_baselines(studies, scale, experiments, with_baselines=False)
 
 
 def worth(studies: Studies, scale: str) -> BaselineComparison:
-    """The studies that have a generic optimiser beside their methods."""
-    compared = {
-        key: [study.baseline_comparison.worth]
+    """The studies that have a generic optimiser beside their methods; with all baselines."""
+    experiments = {
+        key: [comparison.worth]
         for key, study in studies.items()
-        if study.baseline_comparison and study.baseline_comparison.worth
+        if (comparison := study.baseline_comparison) and comparison.worth
     }
-    return _beside_baselines(studies, scale, compared, with_baselines=True)
+    return _beside_baselines(studies, scale, experiments, with_baselines=True)
 
 
 def _beside_baselines(
-    studies: Studies, scale: str, compared: dict[str, list[str]], with_baselines: bool = False
+    studies: Studies, scale: str, experiments: dict[str, list[str]], *, with_baselines: bool
 ) -> BaselineComparison:
-    """Methods of experiments beside the baselines; with_baselines: and all baselines."""
+    """Methods of experiments, by study, beside the baseline that the study names."""
     baselines, repeats, shows = {}, {}, {}
-    for key, experiments in compared.items():
-        study, own = studies[key], studies[key].baseline_comparison
-        baselines[key] = (own.baseline, own.proposed)
-        for name in experiments:
-            content = study.experiments[name]
-            methods = [*content.methods, own.baseline]
-            repeats[f"{key}/{name}"] = content.repeats[scale]
-            shows[f"{key}/{name}"] = chunks_of(
-                study, name, study.methods_of(name) if with_baselines else methods, scale
-            )
+    for key, names in experiments.items():
+        study, comparison = studies[key], studies[key].baseline_comparison
+        baselines[key] = (comparison.baseline, comparison.proposed)
+        for name in names:
+            methods = [*study.experiments[name].methods, comparison.baseline]
+            if with_baselines:
+                methods = study.methods_of(name)
+            repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
+            shows[f"{key}/{name}"] = chunks_of(study, name, methods, scale)
     return BaselineComparison(baselines, repeats, with_baselines, shows=shows)
 
 
