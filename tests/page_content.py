@@ -97,9 +97,9 @@ def job() -> PageJob:
         holds=dict.fromkeys(claims, "any"),
         repeats={"smoke": [2, 3], "extended": [250, 4000]},
         tables={
-            "table1": TableView(HOSTILE, "Ten runs", table, {}, HOSTILE),
-            "more": TableView("more", "Ten runs", table.but(extends="table1"), {}),
-            "listed": TableView("a list", "", SimpleNamespace(), {}),
+            "table1": TableView(HOSTILE, "Ten runs", table, HOSTILE),
+            "more": TableView("more", "Ten runs", table.but(extends="table1")),
+            "listed": TableView("a list", "", SimpleNamespace()),
         },
         figures={"figure1": FigureView("Lengths", HOSTILE, HOSTILE)},
         assumptions=[OPEN_DETAIL],

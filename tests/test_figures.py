@@ -629,7 +629,7 @@ def test_a_drawing_shows_the_marks_of_its_function_in_their_order():
 
 def test_functions_get_the_published_tables_that_they_ask_for():
     published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
-    panel = {"kind": "lines", "data": "own", "published": True, "x": "k", "metric": "value"}
+    panel = {"kind": "lines", "data": "own", "published": "table1", "x": "k", "metric": "value"}
     found = Sources(functions={"own": lambda tables: tables["table1"]}, published=published)
     assert sheet.data(panels_of([panel]), found)["value"].tolist() == [3, 4]
 

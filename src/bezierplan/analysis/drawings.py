@@ -7,13 +7,12 @@ from typing import Any
 import pandas as pd
 
 
-def marks(*sources: Any, drawing: str) -> pd.DataFrame:
+def marks(*sources: Any) -> pd.DataFrame:
     """The marks of a drawing, a row each, or a row for each point of a line or arrow.
 
-    sources: the workspace over which they are drawn, if any, and the published tables by file name.
-    drawing: the name of the file.
+    sources: the workspace over which they are drawn, if any, and the file of the drawing by name.
     """
-    table = sources[-1][drawing]
+    (table,) = sources[-1].values()
     if "text" in table and pd.api.types.is_numeric_dtype(table["text"]):
         # A column of digits is read as numbers, but what is drawn are words.
         return table.assign(text=table["text"].map("{:g}".format, na_action="ignore"))

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
-from bezierplan.schema.model import Line, Model, expected, one_of, shown, wrong
+from bezierplan.schema.model import Line, Model, expected, one_of, one_or_list, shown, wrong
 
 _PANELS = TypeAdapter(dict[str, Annotated[Panel, one_of("kind", kinds())]])
 _PARTS = TypeAdapter(
@@ -79,18 +79,20 @@ class Figure(Model):
     def code(self) -> list[str]:
         """Parts of a study's code that it needs."""
         own = any(panel.kind == "own" for panel in self.panels)
-        return ["metrics", *(["functions"] if self.calls else []), *(["panels"] if own else [])]
+        calls = any(getattr(panel, "data", None) for panel in self.panels)
+        return ["metrics", *(["functions"] if calls else []), *(["panels"] if own else [])]
 
     @property
-    def calls(self) -> bool:
-        """Whether it draws tables of functions, which may show any method."""
-        return any(getattr(panel, "data", None) for panel in self.panels)
+    def names_any(self) -> bool:
+        """Whether its legend names what a function returns, which may be any method."""
+        return any(
+            getattr(panel, "data", None) and getattr(panel, "hue", None) for panel in self.panels
+        )
 
     def draws(self, table: str) -> bool:
-        """Whether it draws the numbers of a published table: a panel names it, or a function that
-        asks for all.
-        """
+        """Whether it draws the numbers of a published table."""
         return any(
-            getattr(panel, "published", False) or getattr(panel, "printed", None) == table
+            table
+            in (getattr(panel, "printed", None), *one_or_list(getattr(panel, "published", [])))
             for panel in self.panels
         )

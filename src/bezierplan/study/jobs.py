@@ -21,7 +21,7 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     Verdict,
 )
-from bezierplan.analysis.table_kinds import FunctionTable, Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy
 from bezierplan.figures.jobs import Figure, Latex
@@ -173,26 +173,24 @@ def looks(study: Study) -> dict[str, str]:
 
 
 def labels_of(study: Study, artefact: str) -> dict[str, str]:
-    """Labels, except those of methods, problems and workspaces that a table or figure cannot show.
-    A function may name any.
+    """Labels, except those of methods, problems and workspaces that a table or figure does not
+    show.
     """
     spec = study.tables.get(artefact) or study.figures[artefact]
-    own = getattr(spec, "labels", {})
-    if layout := study.layout.get(artefact):
-        own = own | layout.names
-    if isinstance(spec, FunctionTable) or getattr(spec, "calls", False):
-        return study.labels | own
+    layout = study.layout.get(artefact)
+    printed = getattr(spec, "labels", {}) | (layout.names if layout else {})
+    if getattr(spec, "names_any", False):
+        return study.labels | printed
     shown = set()
-    for experiment in methods_of_artefact(study, artefact):
-        content = study.experiments[experiment]
-        shown |= {*study.methods_of(experiment), *content.problems}
-        shown |= {str(value) for values in content.vary.values() for value in values}
-        for problem in (study.problems[name] for name in content.problems):
-            shown |= {problem.workspace, problem.route}
-    names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
-    return {
-        name: label for name, label in study.labels.items() if name in shown or name not in names
-    } | own
+    for part in getattr(spec, "panels", [spec]):
+        if name := getattr(part, "experiment", None):
+            content = study.experiments[name]
+            shown |= {*one_or_list(part.where.get("method", content.methods)), *content.problems}
+            shown |= {str(value) for values in content.vary.values() for value in values}
+            for problem in (study.problems[each] for each in content.problems):
+                shown |= {problem.workspace, problem.route}
+    hidden = (study.methods.keys() | study.problems.keys() | study.workspaces.keys()) - shown
+    return {name: label for name, label in study.labels.items() if name not in hidden} | printed
 
 
 def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
@@ -251,7 +249,9 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
         panels=spec.panels,
         layout=study.layout.get(figure),
         labels=labels_of(study, figure),
-        looks={name: look for name, look in looks(study).items() if spec.calls or name in methods},
+        looks={
+            name: look for name, look in looks(study).items() if spec.names_any or name in methods
+        },
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
         problems=problems,
         repeats={name: study.experiments[name].repeats[scale] for name in behind},

@@ -110,7 +110,6 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
                 study.tables[name].title,
                 jobs.behind(study, name, scale),
                 study.whole(name),
-                jobs.labels_of(study, name),
                 jobs.says(study, name),
             )
             for name in names

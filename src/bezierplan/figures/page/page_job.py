@@ -41,8 +41,6 @@ class TableView(NamedTuple):
     behind: str
     spec: Table
     """With what the one that it extends says of published numbers."""
-    labels: dict[str, str]
-    """Those with which the table is made."""
     says: str = ""
 
 

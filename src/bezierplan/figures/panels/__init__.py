@@ -42,6 +42,8 @@ from bezierplan.schema.model import (
     Repeat,
     Where,
     Workspace,
+    listed,
+    one_or_list,
     wrong,
 )
 
@@ -100,13 +102,14 @@ class Sources:
 
     def table(self, panel: TablePanel) -> pd.DataFrame:
         """The table of a function, which is called once for all panels that draw the same one: with
-        the workspace if they name one, with the published tables if they ask for them, and with
-        their arguments.
+        the workspace if they name one, with the published tables that they name, and with their
+        arguments.
         """
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
             first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
-            first += [self.published] if panel.published else []
+            if names := one_or_list(panel.published):
+                first.append({name: self.published[name] for name in names})
             self._tables[call] = self.functions[panel.data](*first, **panel.arguments)
         return self._tables[call]
 
@@ -169,10 +172,10 @@ class TablePanel(Panel):
     data: Function = Field(
         description="the name of a function of the study's module that returns a table; with "
         "`workspace` it is called with that, with "
-        "`published: true` with the published tables by file name"
+        "`published` with those published tables by file name"
     )
-    published: Flag = Field(
-        False, description="whether the function is called with the published tables, true or false"
+    published: listed(PrintedTable, single=True) = Field(
+        [], description="the name of a published table, or a list of names"
     )
     workspace: Workspace = Field(None, description="the name of a workspace")
     arguments: Arguments = Field({}, description=ARGUMENTS)
