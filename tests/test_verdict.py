@@ -22,7 +22,7 @@ def kept():
     tables = {name: pd.read_csv(KEPT / file) for name, file in files.items()}
     audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
     tables["audit"] = pd.concat(audits)
-    files = KEPT.glob(f"*_{outcome.READINGS}")
+    files = KEPT.glob(f"*_{outcome.READINGS[0]}")
     return tables | {"readings": pd.concat(map(pd.read_csv, files))}
 
 

@@ -5,6 +5,9 @@
 rule claims:
     input:
         unpack(results(of(jobs.claims))),
+        readings=lambda wildcards: of_readings(
+            wildcards.scale, {wildcards.study}, "readings", "claims_by_reading"
+        ),
         sources=sources(of(jobs.claims)),
     output:
         claims=report(
@@ -51,13 +54,14 @@ rule audit:
         "../scripts/job.py"
 
 
-# How well each reading of a paper fits its printed numbers.
+# How well each reading of a paper fits its printed numbers, and what it makes of its claims.
 rule readings_of_study:
     input:
         unpack(results(of(jobs.readings))),
         sources=sources(of(jobs.readings)),
     output:
-        f"{RESULTS}/readings.csv",
+        readings=f"{RESULTS}/readings.csv",
+        claims=f"{RESULTS}/claims_by_reading.csv",
     log:
         f"{RESULTS}/logs/readings.log",
     wildcard_constraints:

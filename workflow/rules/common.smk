@@ -219,12 +219,13 @@ READ = [key for key, study in STUDIES.items() if study.votes]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def of_readings(scale, studies):
-    """The readings of some studies, which take minutes: at scale extended alone."""
+def of_readings(scale, studies, *names):
+    """Files of the readings of some studies, which take minutes: at scale extended alone."""
     return [
-        f"results/{scale}/{key}/readings.csv"
+        f"results/{scale}/{key}/{name}.csv"
         for key in READ
         if scale == "extended" and key in studies
+        for name in names
     ]
 
 

@@ -45,7 +45,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        readings=lambda wildcards: of_readings(wildcards.scale, READ),
+        readings=lambda wildcards: of_readings(wildcards.scale, READ, "readings"),
         sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -75,7 +75,7 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        readings=lambda wildcards: of_readings(wildcards.scale, {wildcards.study}),
+        readings=lambda wildcards: of_readings(wildcards.scale, {wildcards.study}, "readings"),
         sources=sources(of(jobs.verdict)),
     output:
         report(
@@ -109,7 +109,9 @@ rule verified:
         unpack(judged),
         shown=shown,
         summary=SUMMARY,
-        readings=lambda wildcards: of_readings(wildcards.scale, READ),
+        readings=lambda wildcards: of_readings(
+            wildcards.scale, READ, "readings", "claims_by_reading"
+        ),
     output:
         "results/{scale}/verified.json",
     log:

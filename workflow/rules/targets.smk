@@ -41,7 +41,7 @@ rule extended:
 # `extended` makes them too.
 rule readings:
     input:
-        of_readings("extended", READ),
+        of_readings("extended", READ, "readings", "claims_by_reading"),
 
 
 # What `make verify-outcome` compares with docs/outcome.

@@ -1,8 +1,7 @@
-"""What a paper leaves open, and what readings of it are scored by (`readings`): plain values, of
-which a job is made.
+"""What a paper leaves open, and the runs by which its readings are judged (`readings`): plain
+values, of which a job is made.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from bezierplan.analysis.table_kinds import Pivot
@@ -10,24 +9,27 @@ from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema.model import one_or_list
 
-LAYOUTS, FEWER = 30, 10
-"""Layouts that score a reading where a printed number is of one of them, and where it is a mean
-over several.
+TIMES, LEAST, MOST = 10, 100, 500
+"""Repeats of each method on each problem, if config does not say how many: so many times the
+paper's, at least and at most so many.
 """
+LAYOUTS, IN_EACH = 50, 3
+"""Random layouts, and repeats in each, at most."""
 
 Reading = dict[str, Any]
 """Id of an assumption -> its value; {} for the default."""
 
 
 class Assumption(NamedTuple):
-    """What a paper leaves open: the alternatives of a setting, or of a key of workspaces.
+    """What a paper leaves open: the other values of a setting, or of a key of workspaces.
 
-    along: by method whose setting it is, further settings that go with an alternative. problems:
+    along: by method whose setting it is, further settings that go with another value. problems:
     those on which alone it changes; all if none are named. workspaces: name -> key. excluded_by:
-    the place of the paper that excludes the alternatives, or ''.
+    the place of the paper that excludes the other values, or ''.
     """
 
     id: str
+    detail: str
     alternatives: list[Any]
     setting: str | None
     along: dict[str, dict[str, Any]]
@@ -37,42 +39,23 @@ class Assumption(NamedTuple):
 
 
 class Experiment(NamedTuple):
-    """The runs that score a reading: chunks by method, and descriptions of the problems."""
+    """The runs of a reading: chunks by method, and descriptions of the problems."""
 
     chunks: dict[str, Chunk]
     descriptions: Descriptions
-
-
-def voting(
-    tables: Mapping[str, Pivot], votes: dict[str, dict[str, dict[str, Any]]]
-) -> dict[str, Pivot]:
-    """The tables of which printed numbers vote, with the rows alone of which any does.
-
-    votes: table -> metric -> column -> the values whose numbers vote; all if none are named.
-    """
-    chosen = {}
-    for name, metrics in votes.items():
-        rows = [*metrics.values()]
-        where = {
-            column: [value for each in rows for value in one_or_list(each[column])]
-            for column in set.intersection(*map(set, rows))
-        }
-        chosen[name] = tables[name].but(where=tables[name].where | where)
-    return chosen
 
 
 def experiment(
     chunks: dict[str, Chunk],
     tables: list[Pivot],
     size: int,
-    read: int,
+    repeats: int | None,
     descriptions: Descriptions,
 ) -> Experiment:
-    """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
-    world.
+    """The runs of an experiment by which readings are judged: of the methods and in the conditions
+    that tables show.
 
-    chunks: the first of each method. size: repeats of the paper. read: runs of each method on each
-    problem; where layouts are drawn, in `LAYOUTS` together, and in each no more than the paper's.
+    chunks: the first of each method. size: repeats of the paper. repeats: of ours, if config says.
     """
 
     def shown(column: str, value: Any) -> bool:
@@ -81,7 +64,7 @@ def experiment(
             for table in tables
         )
 
-    layouts = LAYOUTS if any(table.within for table in tables) else FEWER
+    repeats = repeats or min(max(TIMES * size, LEAST), MOST)
     own_chunks = {}
     for method, chunk in chunks.items():
         if not shown("method", method):
@@ -90,10 +73,11 @@ def experiment(
         met = {
             name: place
             for name, place in chunk.problems.items()
-            if shown("problem", name) and shown("workspace", place["workspace"])
+            if shown("problem", name)
+            and shown("workspace", place["workspace"])
+            and place.get("layout", 0) < LAYOUTS
         }
-        first = {name: place for name, place in met.items() if place.get("layout", 0) < layouts}
         drawn = any("layout" in place for place in met.values())
-        last = min(max(read // LAYOUTS, 1), size) if drawn else read
-        own_chunks[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
+        last = min(IN_EACH, size) if drawn else repeats
+        own_chunks[method] = chunk._replace(vary=vary, problems=met, repeats=[0, last])
     return Experiment(own_chunks, descriptions)

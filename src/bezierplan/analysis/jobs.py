@@ -10,11 +10,11 @@ import hashlib
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.assumptions import Assumption, Experiment
+from bezierplan.analysis.assumptions import Assumption, Experiment, Reading
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.table_kinds import Pivot, Table
@@ -240,8 +240,10 @@ class Claims(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
+        import pandas as pd
+
         from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.claims import judge
+        from bezierplan.analysis.claims import by_reading, judge
         from bezierplan.running import inputs
 
         judged, checks = judge.judge(
@@ -250,38 +252,56 @@ class Claims(Job):
             results.published_tables(input_files.sources),
             study_code.functions(self.code),
         )
-        self.write(judged, output_files.claims)
+        read = [pd.read_csv(file) for file in input_files.readings] or [pd.DataFrame()] * 2
+        self.write(by_reading.told(judged, *read), output_files.claims)
         self.write(checks, output_files.checks)
 
 
 @dataclass(frozen=True)
 class Readings(Job):
-    """The readings of a study, scored."""
+    """The readings of a study, how well they fit, and what they make of its claims."""
 
     study: str
     tables: dict[str, Pivot]
     votes: dict[str, dict[str, dict]]
-    """By table and metric, the printed numbers that score: column -> value or list of values."""
+    """By table and metric, the printed numbers that vote: column -> value or list of values."""
     assumptions: list[Assumption]
+    pairs: list[Reading]
     experiments: dict[str, Experiment]
+    proposed: str | None
     folder: str
+    claims: Claims
 
     def modules(self):
-        """Planners as well."""
+        """Planners as well, and what judges claims."""
         chunks = [chunk for each in self.experiments.values() for chunk in each.chunks.values()]
-        return [*self.code, *(module_of(chunk.planner) for chunk in chunks)]
+        planners = [module_of(chunk.planner) for chunk in chunks]
+        return [*self.code, *planners, *self.claims.modules()]
 
     def run(self, input_files, output_files, threads):
-        """Score the readings."""
-        from bezierplan.analysis import readings, study_code
+        """Judge the readings."""
+        from bezierplan.analysis import readings, results, study_code
+        from bezierplan.analysis.claims import by_reading
         from bezierplan.running import inputs
 
-        study_code.functions(self.code)
-        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
+        functions = study_code.functions(self.code)
+        published = results.published_tables(input_files.sources)
+        covered = by_reading.covered(self.claims.claims, self.experiments)
+        job = replace(self.claims, claims=covered)
+        quantities = readings.quantities(
+            self.tables, self.votes, inputs.by_table(input_files.sources)
+        )
         found = readings.read_problems(inputs.experiments(self.shows, input_files))
-        runner = readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {})
-        table = readings.of_study(self.study, voting, runner)
-        table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
+        made = readings.of_study(
+            self.study,
+            quantities,
+            readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {}),
+            self.pairs,
+            self.proposed,
+            lambda found, among: by_reading.judged(job, found, published, functions, among),
+        )
+        for table, file in zip(made, output_files, strict=True):
+            self.write(table, file)
 
 
 @dataclass(frozen=True)

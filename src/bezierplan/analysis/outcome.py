@@ -18,7 +18,7 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
-AUDIT, READINGS = "audit.csv", "readings.csv"
+AUDIT, READINGS = "audit.csv", ("readings.csv", "claims_by_reading.csv")
 BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 SCALES = {
@@ -47,8 +47,9 @@ def write(
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
         shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
-        if (file := RESULTS / key / READINGS).exists():
-            shutil.copyfile(file, KEPT / f"{key}_{READINGS}")
+        for name in READINGS:
+            if (file := RESULTS / key / name).exists():
+                shutil.copyfile(file, KEPT / f"{key}_{name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
     scored = benchmark.of_results(FULL, experiments)
@@ -65,7 +66,7 @@ def write(
 def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
-    readings = sorted(map(str, folder.glob(f"*_{READINGS}")))
+    readings = sorted(map(str, folder.glob(f"*_{READINGS[0]}")))
     return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, readings)
 
 

@@ -1,31 +1,30 @@
-"""How well the readings of a paper make its printed numbers likely.
+"""The readings of a paper: which of them its own numbers exclude, how well the others fit, and what
+they make of its claims.
 
-A reading gives one assumption, of what the paper leaves open, another value than the default. Its
-score is the mean, over the printed numbers that vote, of the logarithm of their density under our
-runs:
+A reading is the default with another value for one assumption, of what the paper leaves open, or
+for two that config names as a pair, because they trade off. It is excluded
 
-- A mean or median: its relative error has a Student t of `FREEDOM` degrees of freedom, whose scale
-  holds the standard error of the printed number, that of ours, and `DISCREPANCY`: no model of an
-  experiment is exact. So a number that is far off says that the reading is wrong, and not by how
-  much.
-- A count or share: beta-binomial, as if ours came from `WORTH` runs, however many there are; with
-  the probability `ANY`, it can be any.
+- by a printed sentence (`excluded_by`), and is not run then;
+- by a printed mean below the exact optimum of its map;
+- if the proposed method returns no path in at least half of the runs behind a printed number of
+  its.
 
-Extremes and seconds have no vote.
+For the others there is a p of fit (`fit`), which decides no number, as most maps are ours.
 
-Columns: study; reading; excluded_by (the place of the paper that excludes it); score; error
-(standard error by the choice of seeds, by the jackknife over `BLOCKS` parts of the runs); numbers.
+Columns of the readings: study; reading; meaning (what it changes, in words); excluded_by; p (how
+well the printed numbers that vote fit; empty if it was not run); numbers (how many these are).
+Columns of claims by reading: study; id (of the claim); reading; verdict.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, metrics
+from bezierplan.analysis import comparison, fit, metrics
 from bezierplan.analysis.assumptions import Assumption, Experiment, Reading
 from bezierplan.analysis.results import Results, joined, published_table, select
 from bezierplan.analysis.table_kinds import Pivot
@@ -36,20 +35,25 @@ from bezierplan.running.guard.interface import check_settings
 from bezierplan.running.inputs import Files
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
+from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
-DISCREPANCY, FREEDOM = 0.03, 4
-WORTH, ANY = 50, 0.05
-BLOCKS = 5
-VOTING = {
-    **{name: name for name in ("mean", "median", "count")},
-    "share": "count",
-}
+VOTING = {"mean": "mean", "median": "median", "count": "count", "share": "count"}
 """Statistics of printed numbers that vote -> what ours are."""
+LEAST_P = 0.01
+"""A reading with a lower p does not fit."""
+LOST = 0.5
+"""Share of runs without a path from which the proposed method is said to return none."""
 
 
 class Quantity(NamedTuple):
-    """Printed numbers of one quantity of a table, with the keys of each."""
+    """Printed numbers of one quantity of a table.
+
+    where, of_runs: the runs, and those of them that count. least: the column of runs that none of
+    their values can lie below, if any. keys: columns of runs that tell the numbers apart. printed:
+    these keys, value, n (of the paper's runs, layouts or fields) and votes.
+    """
 
     experiment: str
     where: dict[str, Any]
@@ -57,118 +61,127 @@ class Quantity(NamedTuple):
     metric: str
     statistic: str
     decimals: int
-    within: str | None
+    least: str | None
     keys: list[str]
     printed: pd.DataFrame
 
 
 def name_of(reading: Reading) -> str:
-    """A reading in words."""
-    return ", ".join(f"{choice}={value}" for choice, value in reading.items()) or "default"
-
-
-# --------------------------------------------------------------------------------------------------
-# The score
+    """A reading as it is written in tables."""
+    return ", ".join(f"{name}={value}" for name, value in reading.items()) or "default"
 
 
 def quantities(
     tables: dict[str, Pivot], votes: dict[str, dict[str, dict]], files: dict[str, str]
 ) -> list[Quantity]:
-    """The printed numbers that vote. votes: table -> metric -> which of them (column -> value or
-    list of values); files: of published numbers.
+    """The printed numbers of tables. votes: table -> metric -> which of them vote (column -> value
+    or list of values); files: of published numbers.
     """
     all_quantities = []
     for name, spec in tables.items():
         printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
-        printed = printed.replace({"statistic": {"unstated": "median"}})
         keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
+        printed = printed.replace({"statistic": {"unstated": "median"}})
         for entry in spec.values:
-            for statistic in entry.statistics if entry.metric in votes[name] else ():
-                statistic = statistic.replace("unstated", "median")
-                wanted = {"metric": entry.metric, "statistic": statistic}
-                chosen = select(printed, votes[name][entry.metric] | wanted)
-                chosen = chosen.assign(n=chosen["n"].fillna(1))
-                if statistic == "share":
-                    chosen = chosen.assign(value=chosen["value"] * chosen["n"])
-                if statistic not in VOTING:
+            for named in one_or_list(entry.statistic):
+                statistic = named.replace("unstated", "median")
+                chosen = select(printed, {"metric": entry.metric, "statistic": statistic})
+                if statistic not in VOTING or chosen.empty:
                     continue
-                quantity = Quantity(
-                    spec.experiment,
-                    spec.where | spec.primary,
-                    entry.where,
-                    entry.metric,
-                    VOTING[statistic],
-                    entry.decimals,
-                    spec.within,
-                    keys,
-                    chosen,
+                voting = select(chosen, votes[name].get(entry.metric, {"metric": []}))
+                numbers = chosen["value"].astype(float)
+                size = chosen["n"].fillna(1)
+                if statistic == "share":
+                    numbers = numbers * size
+                all_quantities.append(
+                    Quantity(
+                        spec.experiment,
+                        spec.where | spec.primary,
+                        entry.where,
+                        entry.metric,
+                        VOTING[statistic],
+                        entry.decimals,
+                        entry.least,
+                        keys,
+                        chosen[keys].assign(
+                            value=numbers,
+                            n=1 if spec.within else size,
+                            votes=chosen.index.isin(voting.index),
+                        ),
+                    )
                 )
-                all_quantities.append(quantity)
     return all_quantities
 
 
-def measured(voting: list[Quantity], results: dict[str, Results]) -> np.ndarray:
-    """What our runs say of the k printed numbers: the mean or share, its variance between
-    experiments of the paper's size, and the variance of ours; first by all runs, then without each
-    of the blocks: (BLOCKS + 1, k, 3). NaN without runs that count, variances with a single one.
+# --------------------------------------------------------------------------------------------------
+# What the printed numbers say of our runs
+
+
+def by_unit(quantity: Quantity, results: Results, column: str = "") -> pd.DataFrame:
+    """Our values, or those of a column, one row for each printed number and one column for each
+    unit (layout, or repeat); NaN without a value.
     """
-    columns = []
-    for each in voting:
-        found = results[each.experiment]
-        runs = select(select(found.runs, each.where), each.of_runs)
-        runs = runs.assign(value=metrics.values(runs, each.metric, found.problems))
-        block = runs["layout" if "layout" in runs else "repeat"] % BLOCKS
-        for row in each.printed.to_dict("records"):
-            own = np.logical_and.reduce([runs[key] == row[key] for key in each.keys])
-            columns.append(
-                [
-                    _moments(runs[own & (block != left)], row["n"], each)
-                    for left in range(-1, BLOCKS)
-                ]
-            )
-    return np.swapaxes(np.array(columns), 0, 1)
+    runs = select(results.runs, quantity.where)
+    counts = runs.index.isin(select(runs, quantity.of_runs).index)
+    values = runs[column] if column else metrics.values(runs, quantity.metric, results.problems)
+    values = values.astype(float).where(counts)
+    unit = runs["layout" if "layout" in runs else "repeat"]
+    table = values.groupby([runs[key] for key in quantity.keys] + [unit]).mean().unstack()
+    wanted = quantity.printed.set_index(quantity.keys).index
+    return table.reindex(wanted)
 
 
-def _moments(runs: pd.DataFrame, size: float, of: Quantity) -> tuple[float, float, float]:
-    values, counts = runs["value"].dropna(), of.statistic == "count"
-    if counts:
-        return values.sum() / max(len(runs), 1), 0.0, 0.0
-    counted, centre = max(size * len(values) / max(len(runs), 1), 1), values.agg(of.statistic)
-    if len(values) < 2:
-        return centre, math.nan, math.nan
-    if of.within is None:
-        variance = values.var()
-        return centre, variance / counted, variance / len(values)
-    groups = values.groupby(runs[of.within])
-    between = groups.mean().var()
-    return centre, between + groups.var().mean() / counted, between / len(groups)
+def groups(quantities: list[Quantity], results: dict[str, Results]) -> list[fit.Numbers]:
+    """The numbers that vote, those of the same problems together."""
+    together: dict[tuple, list[tuple[Quantity, pd.DataFrame]]] = {}
+    for each in quantities:
+        voting = each._replace(printed=each.printed[each.printed["votes"]])
+        if len(voting.printed):
+            found = results[each.experiment]
+            problem = select(found.runs, each.where)["problem"].unique()
+            values = by_unit(voting, found)
+            together.setdefault((each.experiment, *sorted(problem)), []).append((voting, values))
+    return [_joined(own) for own in together.values()]
 
 
-def scored(voting: list[Quantity], printed: np.ndarray, ours: np.ndarray) -> tuple[float, float]:
-    """The score of a reading, and its standard error by the choice of seeds.
+def _joined(own: list[tuple[Quantity, pd.DataFrame]]) -> fit.Numbers:
+    printed = pd.concat([each.printed for each, _ in own])
+    lengths = [len(each.printed) for each, _ in own]
+    statistic = np.repeat([each.statistic for each, _ in own], lengths)
+    values = np.concatenate([values.to_numpy() for _, values in own]).T
+    (size,) = printed["n"].unique()
+    return fit.Numbers(
+        np.where(statistic == "count", np.nan_to_num(values), values),
+        printed["value"].to_numpy(),
+        np.repeat([10.0**-each.decimals for each, _ in own], lengths),
+        statistic == "count",
+        statistic == "median",
+        int(size),
+    )
 
-    printed: the numbers (k,). ours: as from `measured`.
+
+def excluded(quantities: list[Quantity], results: dict[str, Results], proposed: str | None) -> str:
+    """Why the printed numbers exclude the reading that runs were made under; empty if they do
+    not.
     """
-    whole, *parts = (np.nanmean(_densities(voting, printed, each)) for each in ours)
-    return float(whole), float(np.std(parts) * math.sqrt(BLOCKS - 1))
+    below, lost = False, False
+    for each in quantities:
+        found, printed = results[each.experiment], each.printed
+        if each.least and each.statistic == "mean":
+            least = by_unit(each, found, each.least).min(axis=1).to_numpy()
+            below |= bool((printed["value"] + 0.5 * 10.0**-each.decimals < least).any())
+        if "method" in printed and metrics.METRICS[each.metric].feasible_only:
+            own = each._replace(printed=printed[printed["method"] == proposed])
+            lost |= bool((by_unit(own, _with_lost(found), "lost").mean(axis=1) >= LOST).any())
+    reasons = {
+        "a printed mean lies below the exact optimum": below,
+        "the proposed method returns no path": lost,
+    }
+    return "; ".join(reason for reason, holds in reasons.items() if holds)
 
 
-def _densities(voting: list[Quantity], printed: np.ndarray, ours: np.ndarray) -> np.ndarray:
-    """Logarithms of the densities of printed numbers (k,). ours: (k, 3)."""
-    from scipy import stats
-
-    counted = np.concatenate([[each.statistic == "count"] * len(each.printed) for each in voting])
-    size = np.concatenate([each.printed["n"] for each in voting])
-    step = np.concatenate([[10.0**-each.decimals] * len(each.printed) for each in voting])
-    unit = np.maximum(np.abs(printed), step)
-    centre, variance, error = ours.T
-    relative = np.where(np.isnan(variance), 1.0, (printed - centre) / unit)
-    scale = np.sqrt(DISCREPANCY**2 + (np.nan_to_num(variance + error) + step**2 / 12) / unit**2)
-    means = stats.t.logpdf(relative / scale, FREEDOM) - np.log(scale)
-    true = np.where(counted, centre, 0.0) * WORTH + 0.5
-    counts = stats.betabinom.pmf(np.round(printed), size, true, WORTH + 1 - true)
-    counts = np.log((1 - ANY) * counts + ANY / (size + 1))
-    return np.where(np.isnan(printed), np.nan, np.where(counted, counts, means))
+def _with_lost(results: Results) -> Results:
+    return results._replace(runs=results.runs.assign(lost=results.runs["length"].isna()))
 
 
 # --------------------------------------------------------------------------------------------------
@@ -191,49 +204,61 @@ def under(chunk: Chunk, reading: Reading, assumptions: list[Assumption]) -> Chun
     return chunk._replace(settings=settings, problems=places)
 
 
+class Made(NamedTuple):
+    """Runs of a method in an experiment under a reading. own: whether they are others than those of
+    the default.
+    """
+
+    experiment: str
+    chunk: Chunk
+    own: bool
+
+
 class Runner(NamedTuple):
-    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds.
-    runs: those that were made, which other readings share that change another method.
+    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds. kept:
+    by experiment and method, the runs of the default, which other readings share.
     """
 
     assumptions: list[Assumption]
     experiments: dict[str, Experiment]
     folder: Path
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
-    runs: dict[str, pd.DataFrame]
+    kept: dict[tuple[str, str], pd.DataFrame]
 
-    def fits(self, reading: Reading) -> bool:
-        """Whether its settings do not exclude each other."""
+    def chunks(self, reading: Reading) -> list[Made]:
+        """What is run under a reading; nothing if its settings exclude each other."""
+        made = []
+        for name, each in self.experiments.items():
+            moved = bool(self._changed(name, reading))
+            for default in each.chunks.values():
+                chunk = under(default, reading, self.assumptions)
+                made.append(Made(name, chunk, moved or chunk != default))
         try:
-            for _, chunk in self.chunks(reading):
+            for chunk in (each.chunk for each in made):
                 for condition in chunk.conditions():
                     settings = execution.settings_in(chunk, condition)
                     check_settings(planner_module(chunk.planner), settings, "")
         except Fault:
-            return False
-        return True
+            return []
+        return made
 
-    def chunks(self, reading: Reading) -> Iterator[tuple[str, Chunk]]:
-        """The chunks under a reading, each with what tells its runs apart from others."""
-        for name, each in self.experiments.items():
-            world = name_of(reading) if self._changed(name, reading) else ""
-            for chunk in each.chunks.values():
-                read = under(chunk, reading, self.assumptions)
-                yield f"{world}: {read}", read
-
-    def results(self, reading: Reading) -> dict[str, Results]:
-        """Runs under a reading, by experiment."""
-        chunks = [*self.chunks(reading)]
+    def results(self, reading: Reading, chunks: list[Made]) -> dict[str, Results]:
+        """The runs of chunks under a reading, by experiment."""
         results = {}
         for name in self.experiments:
-            own = [(key, chunk) for key, chunk in chunks if chunk.experiment == name]
-            made, bounds = self._world(name, reading, own[0][1].problems)
-            for key, chunk in own:
-                if key not in self.runs:
-                    self.runs[key] = execution.run_chunk(made, chunk)[0].to_pandas()
-            runs = pd.concat([self.runs[key] for key, _ in own], ignore_index=True)
-            results[name] = joined(runs, made, bounds)
+            own = [each for each in chunks if each.experiment == name]
+            world, bounds = self._world(name, reading, own[0].chunk.problems)
+            runs = pd.concat([self._runs(world, each) for each in own], ignore_index=True)
+            results[name] = joined(runs, world, bounds)
         return results
+
+    def _runs(self, world: dict[str, Problem], made: Made) -> pd.DataFrame:
+        place = (made.experiment, made.chunk.method)
+        if made.own:
+            return execution.run_chunk(world, made.chunk)[0].to_pandas()
+        if place not in self.kept:
+            self.kept[place] = execution.run_chunk(world, made.chunk)[0].to_pandas()
+        return self.kept[place]
 
     def _changed(self, experiment: str, reading: Reading) -> dict[str, dict[str, Any]]:
         """The descriptions of workspaces that a reading changes."""
@@ -263,49 +288,67 @@ class Runner(NamedTuple):
         return made, problems.bounds_of(made).to_pandas()
 
 
-# --------------------------------------------------------------------------------------------------
-# The search
-
-
-def listed(assumptions: list[Assumption]) -> list[Reading]:
-    """The default, and each alternative alone."""
-    alone = [{each.id: value} for each in assumptions for value in each.alternatives]
-    return list({name_of(each): each for each in ({}, *alone)}.values())
-
-
-def of_study(study: str, voting: list[Quantity], runner: Runner) -> pd.DataFrame:
-    """The scores of the readings of a study."""
-    assumptions, printed = runner.assumptions, _of_paper(voting)
-    excluding = {each.id: each.excluded_by for each in assumptions if each.excluded_by}
-    rows, readings = [], [each for each in listed(assumptions) if runner.fits(each)]
-    sizes = {key: chunk.runs for each in readings for key, chunk in runner.chunks(each)}
-    for number, reading in enumerate(readings, 1):
-        done = sum(sizes[key] for key in runner.runs)
-        # Each may take minutes, so whoever waits sees it in the terminal.
-        place = f"{study}: reading {number} of {len(readings)}, {name_of(reading)}"
-        log.say(f"{place}: {done} of {sum(sizes.values())} runs done")
-        score, error = scored(voting, printed, measured(voting, runner.results(reading)))
-        rows.append(
-            {
-                "study": study,
-                "reading": name_of(reading),
-                "excluded_by": "; ".join(excluding[each] for each in reading if each in excluding),
-                "score": score,
-                "error": error,
-                "numbers": len(printed),
-            }
-        )
-    return pd.DataFrame(rows)
-
-
-def _of_paper(voting: list[Quantity]) -> np.ndarray:
-    """The numbers that the paper prints (k,)."""
-    return np.concatenate([each.printed["value"].astype(float) for each in voting])
-
-
 def read_problems(files: dict[str, Files]) -> dict[str, tuple[dict[str, Problem], pd.DataFrame]]:
     """Problems and bounds by experiment, from their files."""
     return {
         name: (problems.read(each.problems), pd.read_parquet(each.bounds))
         for name, each in files.items()
     }
+
+
+# --------------------------------------------------------------------------------------------------
+# All readings
+
+
+def listed(assumptions: list[Assumption], pairs: list[Reading]) -> list[Reading]:
+    """The default, each other value of an assumption, and the pairs."""
+    alone = [{each.id: value} for each in assumptions for value in each.alternatives]
+    return [{}, *alone, *pairs]
+
+
+def of_study(
+    study: str,
+    quantities: list[Quantity],
+    runner: Runner,
+    pairs: list[Reading],
+    proposed: str | None,
+    judge: Callable[[dict[str, Results], int], pd.DataFrame],
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The readings of a study, and its claims by reading, but under those that do not fit where one
+    does. judge: the verdicts on claims (id,
+    verdict) from the results of one of so many readings.
+    """
+    by_id = {each.id: each for each in runner.assumptions}
+    tried = []
+    for reading in listed(runner.assumptions, pairs):
+        sentences = [by_id[each].excluded_by for each in reading if by_id[each].excluded_by]
+        chunks = [] if sentences else runner.chunks(reading)
+        why = "; ".join(sentences) or ("" if chunks else "its settings exclude each other")
+        runs = sum(made.chunk.runs for made in chunks if made.own or not reading)
+        tried.append((reading, chunks, why, runs))
+    rows, verdicts, fits, done = [], [], False, 0
+    among, every = (sum(values) for values in zip(*((not why, runs) for *_, why, runs in tried)))
+    for number, (reading, chunks, why, runs) in enumerate(tried, 1):
+        name, p = name_of(reading), math.nan
+        if chunks:
+            # Each may take minutes, so whoever waits sees it in the terminal.
+            place = f"{study}: reading {number} of {len(tried)}, {name}"
+            log.say(f"{place}: {done} of {every} runs done")
+            results = runner.results(reading, chunks)
+            why, done = excluded(quantities, results, proposed), done + runs
+            p = fit.p_of_fit(groups(quantities, results), generator(f"{study}/{name}/fit"))
+            fits |= p >= LEAST_P and not why
+            if not why and (p >= LEAST_P or not fits):
+                verdicts.append(judge(results, among).assign(study=study, reading=name))
+        rows.append(
+            {
+                "study": study,
+                "reading": name,
+                "meaning": "; ".join(f"{by_id[each].detail}: {reading[each]}" for each in reading),
+                "excluded_by": why,
+                "p": p,
+                "numbers": int(sum(each.printed["votes"].sum() for each in quantities)),
+            }
+        )
+    columns = ["study", "id", "reading", "verdict"]
+    return pd.DataFrame(rows), pd.concat(verdicts, ignore_index=True)[columns]

@@ -68,6 +68,7 @@ def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Assumption]:
             chosen.append(
                 plain.Assumption(
                     assumption.id,
+                    assumption.detail,
                     assumption.alternatives,
                     assumption.setting,
                     along,

@@ -149,6 +149,13 @@ class Checks:
             for table, voting in study.votes.items():
                 values = study.tables[table].values
                 check_all(voting, [each.metric for each in values if each.defined], table)
+        with self.at(relative(study.folder / "assumptions.yaml"), "pairs"):
+            known = {each.id: each.alternatives for each in study.assumptions}
+            for pair in study.pairs:
+                check_all(pair.keys() - self.invalid, known, "assumption")
+                for name, value in pair.items():
+                    if value not in known.get(name, [value]):
+                        raise Fault(f"{name}: {value}: no alternative; one of {known[name]}")
         return self.faults
 
     # experiments.yaml

@@ -27,6 +27,8 @@ from bezierplan.schema.model import (
 )
 from bezierplan.study.experiments import ProblemName
 
+AssumptionId = Annotated[str, matching(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")]
+
 
 class ClaimsFile(Model):
     """The file."""
@@ -37,7 +39,7 @@ class ClaimsFile(Model):
 class Assumption(Model):
     """What a paper leaves open, and the default here."""
 
-    id: Annotated[str, matching(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")] = Field(
+    id: AssumptionId = Field(
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
     detail: Line = Field(description="what the paper leaves open, one line")
@@ -106,9 +108,15 @@ class AssumptionsFile(Model):
 
     assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)
     reading_repeats: Count = Field(
-        100,
-        description="how many runs of each method under each condition score a reading, a whole "
-        "number; fewer where layouts are drawn",
+        None,
+        description="how many runs of each method under each condition judge a reading, a whole "
+        "number; left out: ten times the paper's, at least 100 and at most 500; fewer where "
+        "layouts are drawn",
+    )
+    pairs: list[dict[AssumptionId, Setting]] = Field(
+        [],
+        description="a list of readings with two values, for assumptions that trade off: id of an "
+        "assumption → one of its alternatives",
     )
     votes: dict[Name, dict[Metric, Where]] = Field(
         {},

@@ -24,7 +24,8 @@ class Study(Experiments, ArtefactsFile):
     claims: Sequence[Claim] = ()
     assumptions: Sequence[Assumption] = ()
     votes: dict
-    reading_repeats: int
+    pairs: list
+    reading_repeats: int | None
     layout: Mapping[str, Layout] = {}
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:

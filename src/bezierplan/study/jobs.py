@@ -351,28 +351,33 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
 
 def readings(study: Study, scale: str) -> Readings:
     """The readings of a study."""
-    tables = assumptions.voting(study.compared(), study.votes)
+    compared = study.compared()
+    tables = {name: compared[name] for name in study.votes}
     experiments = {}
     for name in dict.fromkeys(each.experiment for each in tables.values()):
         content = study.experiments[name]
         experiments[name] = assumptions.experiment(
             {method: job(study, name, method, scale, 0) for method in content.methods},
-            [each for each in tables.values() if each.experiment == name],
+            [each for each in compared.values() if each.experiment == name and each.published],
             content.repeats["full"],
             study.reading_repeats,
             problems_job(study, name, scale),
         )
     methods = {method for each in experiments.values() for method in each.chunks}
     homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
+    beside = study.baseline_comparison
     return Readings(
         study.key,
         tables,
         study.votes,
         alternatives.assumptions(study, methods),
+        study.pairs,
         experiments,
+        beside.proposed if beside else None,
         relative(study.folder),
+        claims(study, scale),
         sources=[*study.published_files(), *study.maps(homes)],
-        code=study.code_for("metrics", "worlds"),
+        code=study.code_for("metrics", "worlds", "functions"),
         shows={name: {} for name in experiments},
     )
 

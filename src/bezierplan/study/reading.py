@@ -187,7 +187,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     changes: settings that take the place of those of the same name there; those of one planner are
     taken one by one.
     """
-    content = {"votes": {}, "reading_repeats": 0}
+    content = {"votes": {}, "pairs": [], "reading_repeats": None}
     faults, invalid, broken = [], [], []
     for name, model in FILES.items():
         file = folder / f"{name}.yaml"

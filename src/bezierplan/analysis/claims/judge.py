@@ -80,14 +80,14 @@ class _Judgement(NamedTuple):
 
 
 def judge(
-    job: Any, results: dict[str, Results], published: dict, functions: dict
+    job: Any, results: dict[str, Results], published: dict, functions: dict, among: int = 1
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
 
     job: of the class `jobs.Claims`; all random draws are seeded by names. functions: by name, of
-    the study's file in `papers/`. The others as in `Material`. Nothing depends on the order of the
-    runs. Raises Fault for a claim that mixes runs of several conditions or names an unknown
-    function.
+    the study's file in `papers/`. among: of how many readings the results are those of one. The
+    others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that
+    mixes runs of several conditions or names an unknown function.
     """
     material = Material(
         results,
@@ -98,6 +98,7 @@ def judge(
         job.paired,
         job.paper_repeats,
         job.labels,
+        among,
     )
     claim_rows, check_rows = [], []
     for claim in job.claims:
@@ -231,7 +232,10 @@ def _findings(
     if not isinstance(check, OfRuns):
         judged = kind.findings(check, claim, material)
         return [
-            _Judgement(number, check, primary, condition, words, None, finding)
+            _Judgement(
+                *(number, check, primary, condition, words, None),
+                verdicts.among(finding, check, material.among),
+            )
             for condition, words, finding in judged
         ]
     if _is_timed(check) and not check.relative:
@@ -239,7 +243,10 @@ def _findings(
     judged = [
         _Judgement(
             *(number, check, primary, comparison.place, comparison.name, comparison),
-            kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
+            verdicts.among(
+                kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
+                *(check, material.among),
+            ),
         )
         for comparison in comparisons.comparisons(check, claim, material)
     ]

@@ -36,7 +36,7 @@ class Material(NamedTuple):
     `papers/`. variant_of: method -> the method whose published numbers count.
     paired: for each experiment, whether runs with equal repeat numbers share a start or a random
     workspace. repeats: the paper's number of repeats of each, used if the printed numbers do not
-    state it. labels: name -> how it is printed.
+    state it. labels: name -> how it is printed. among: of how many readings this is one.
     """
 
     results: dict[str, Results]
@@ -47,6 +47,7 @@ class Material(NamedTuple):
     paired: dict[str, bool]
     repeats: dict[str, int]
     labels: dict[str, str]
+    among: int = 1
 
 
 class Untestable(Exception):
