@@ -6,6 +6,7 @@ A kind of panel is a module of `figures.panels`, which says what each has.
 import math
 import string
 import textwrap
+from collections import Counter
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -113,6 +114,7 @@ def draw(
         _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
     captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
+    captions[0] = " ".join(filter(None, [captions[0], _same_paths(letters, frame)]))
     figure.set_label("\n".join(filter(None, captions)))
     return figure
 
@@ -211,6 +213,20 @@ def _caption(letters: list[str], clauses: list[str]) -> str:
         for clause in filter(None, clauses)
     }
     return " ".join(f"{', '.join(own)} {clause}.".lstrip() for clause, own in same.items())
+
+
+def _same_paths(letters: list[str], frame: pd.DataFrame) -> str:
+    """Which panels show the same path."""
+    if "part" not in frame:
+        return ""
+    panels = frame[frame["part"] == "path"].groupby("panel")
+    paths = {number: own[["x", "y"]].to_numpy().tobytes() for number, own in panels}
+    same = [
+        ", ".join(letters[number].strip() for number in paths if paths[number] == path)
+        for path, count in Counter(paths.values()).items()
+        if count > 1
+    ]
+    return " ".join(f"{panels} show the same path." for panels in same)
 
 
 def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = None) -> None:

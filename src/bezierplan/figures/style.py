@@ -128,6 +128,7 @@ HOLLOW_LABEL = "hollow: some runs are not feasible"
 LAST = {
     INTERVAL["label"],
     HOLLOW_LABEL,
+    f"{INTERVAL['label']} at the end",
     "published",
     "published mean",
     "published final mean",
@@ -140,7 +141,7 @@ SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 PANEL_HEIGHT = 0.7
 
 # An axis shows at least this share of its values: what differs by less looks equal.
-_LEAST_SPAN = 0.01
+_LEAST_SPAN = 0.003
 
 # Up to this size, values on a symmetric logarithmic axis are linear.
 _LINEAR = 1e-3
@@ -193,7 +194,8 @@ def lines(
     names: list[str] = []
     for value in values:
         own = looks.get(value)
-        free = [name for name in LOOKS if name not in names] or list(LOOKS)
+        # Black last: it is the baseline's.
+        free = [name for name in [*LOOKS][1:] if name not in names] or [*LOOKS]
         names.append(own if own is not None and own not in names else free[0])
     colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
@@ -237,7 +239,7 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **mor
 
 
 def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
-    """Scale an axis of measured values, so that it shows at least a hundredth of them, with plain
+    """Scale an axis of measured values, so that it shows at least `_LEAST_SPAN` of them, with plain
     numbers; lengths of time with their unit.
     """
     from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter

@@ -27,6 +27,9 @@ _BOUNDED = ("length", "objective")
 # Of a panel, as a share of its width.
 _HEIGHT = 0.45
 
+# Of the bars at a place, as a share of its room.
+_WIDTH = 0.8
+
 
 class Options(MetricPanel):
     x: Column = Field(description="a column of the runs table: a place for each of its values")
@@ -83,9 +86,41 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     # Each statistic with the ends of its interval: their median and their range.
     long = named.melt(["x", "hue"], ["value", "low95", "high95"], value_name="end")
     error = {"errorbar": ("pi", 100), "err_kws": {"linewidth": 0.8, "color": "0.1"}}
-    sns.barplot(long, y="end", estimator="median", palette=colours, saturation=1, **layout, **error)
-    for label, colour in colours.items():
-        axes.bar(0, 0, color=colour, label=label)
+    if options.scale == "linear":
+        sns.barplot(
+            long, y="end", estimator="median", palette=colours, saturation=1, **layout, **error
+        )
+        for label, colour in colours.items():
+            axes.bar(0, 0, color=colour, label=label)
+    else:  # the length of a bar would mean nothing
+        marks = [look["marker"] for _, _, look in groups]
+        dodge = _WIDTH * (1 - 1 / len(groups))
+        sns.pointplot(
+            long,
+            y="end",
+            estimator="median",
+            palette=colours,
+            linestyle="none",
+            markers=marks,
+            markersize=4,
+            dodge=dodge,
+            **layout,
+            **error,
+        )
+        for label, mark in zip(colours, marks):
+            axes.plot([], [], **style.mark(mark, 4, colours[label], label=label))
+    for place, bar in named[named["value"].isna()][["x", "hue"]].itertuples(index=False):
+        shift = (list(colours).index(bar) + 0.5) / len(colours) - 0.5
+        axes.text(
+            names.index(place) + _WIDTH * shift,
+            0.02,
+            "no free path",
+            transform=axes.get_xaxis_transform(),
+            rotation=90,
+            ha="center",
+            va="bottom",
+            color=colours[bar],
+        )
     if frame["published"].notna().any():
         mark = {"marker": "D", "edgecolor": style.BLACK, "linewidth": 0.9, "size": 3.5}
         white = dict.fromkeys(colours, style.FREE)
@@ -100,13 +135,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         label = "exact shortest path"
         axes.hlines(bounds, middles - 0.45, middles + 0.45, label=label, **style.BOUND)
     style.name_places(axes, names, axis_label(x, scene))
+    axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_box_aspect(_HEIGHT)
     axes.set_ylabel(axis_label(options.metric, scene, options.statistic))
     style.measure(axes.yaxis, options.scale, unit_of(options.metric, scene))
     metric = f"{options.statistic} {style.column_name(options.metric, labels)}"
-    none = "; no bar: no feasible run" if frame["value"].isna().any() else ""
     return Note(
         "",
-        runs_note(frame, options.statistic, "bar") + none,
+        runs_note(frame, options.statistic, "bar"),
         glance.mostly(metric, frame, x, hue, labels),
     )

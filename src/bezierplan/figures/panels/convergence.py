@@ -37,8 +37,9 @@ if TYPE_CHECKING:
 # Marks on the line of a group, at generations that differ from those of the other lines.
 _MARKS = 5
 
-# More bands on top of each other than this hide the lines.
-_MOST_BANDS = 5
+# More bands on top of each other than this are one grey: then intervals stand at the end, unless
+# they are too many as well.
+_MOST_BANDS, _MOST_ENDS = 3, 5
 
 
 class Options(RunsPanel):
@@ -197,12 +198,20 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
         if len(groups) <= _MOST_BANDS:
             band = style.interval_band(look["color"])
             axes.fill_between(generation, rows["low95"], rows["high95"], zorder=1.5, **band)
+        elif len(groups) <= _MOST_ENDS:
+            last = rows.iloc[-1]
+            at = last["generation"] * (1 - 0.015 * (len(groups) - number))
+            bar = {"color": look["color"], "linewidth": 1.1, "zorder": 3.5}
+            axes.vlines(at, last["low95"], last["high95"], **bar)
         if "printed" in rows:
             edge = style.PUBLISHED_MARK | {"markeredgecolor": look["color"], "clip_on": False}
             axes.plot(generation, rows["printed"], zorder=4, **edge)
             axes.plot([], [], label="published final mean", **style.PUBLISHED_MARK)
-    if len(groups) <= _MOST_BANDS:
-        axes.plot([], [], **style.INTERVAL | {"linewidth": 4, "alpha": 0.3})
+    if len(groups) <= _MOST_ENDS:
+        wide = {"linewidth": 4, "alpha": 0.3}
+        if len(groups) > _MOST_BANDS:
+            wide = {"label": f"{style.INTERVAL['label']} at the end"}
+        axes.plot([], [], **style.INTERVAL | wide)
     axes.set_ylabel(axis_label("objective", scene, options.statistic))
     style.measure(axes.yaxis)
     ends = frame[frame["generation"] == frame["generation"].max()]

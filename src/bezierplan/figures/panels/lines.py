@@ -45,6 +45,9 @@ if TYPE_CHECKING:
 # At most so many values, evenly spaced, each get a tick, and of a table a mark.
 _FEW = 5
 
+# Intervals of which none is longer than this share of the panel's height are not seen.
+_SEEN = 0.02
+
 # Above this many points, only the points are drawn: lines between jumping values would cover the
 # panel.
 _MOST_JOINED = 100
@@ -137,6 +140,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.experiment is None:
         return Note()
     ours = frame[frame["part"] == "statistic"]
+    ends = [
+        axes.transData.transform(ours[[x, end]].to_numpy())[:, 1] for end in ("low95", "high95")
+    ]
+    if np.nanmax(np.diff(ends, axis=0), initial=0) > _SEEN * axes.bbox.height:
+        axes.plot([], [], **style.INTERVAL)
     return Note("", runs_note(ours, options.statistic, "point"), _glance(ours, scene, options))
 
 
@@ -145,8 +153,6 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None
     there are others: a method that rarely succeeds may have the best mean.
     """
     axes.vlines(frame[x], frame["low95"], frame["high95"], color=look["color"], linewidth=0.8)
-    if frame["low95"].notna().any():
-        axes.plot([], [], **style.INTERVAL)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
     partial = frame[(frame["feasible_runs"] < frame["runs"]) & (frame["n"] < frame["runs"])]
     if len(partial):

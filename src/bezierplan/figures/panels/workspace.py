@@ -53,6 +53,9 @@ LETTERS = "what is written next to start and target: a list of two"
 # How far a letter stands from a place, towards the panel's centre, in points.
 _LETTER_OFFSET = np.array([14, 4])
 
+# What is near an end of a path, as a share of the panel's width.
+_NEAR = 0.2
+
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
 # suffice.
 _MOST_CELLS = 2500
@@ -179,8 +182,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     unit = scene.workspaces[options.workspace].unit
     shade(axes, frame)
     numbered = frame[frame["number"].notna()]
+    # Narrow digits: three of them have to fit into a cell.
+    look = {"family": "STIXGeneral", "ha": "center", "va": "center_baseline", "in_layout": False}
     for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
-        axes.text(x, y, str(int(number)), ha="center", va="center_baseline", in_layout=False)
+        axes.text(x, y, str(int(number)), **look)
     if numbered.empty:
         scale(axes, unit)
         return Note()
@@ -215,7 +220,12 @@ def draw_letters(axes: Axes, frame: pd.DataFrame, letters: list[str] | None) -> 
     for part, letter in zip(ENDS, letters or ()):
         end = frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float)
         inwards = np.sign([np.mean(axes.get_xlim()), np.mean(axes.get_ylim())] - end)
-        place = {"xytext": _LETTER_OFFSET * inwards, "textcoords": "offset points"}
+        # Beside the path: above or below one that begins flat, right or left of a steep one.
+        away = np.abs(frame.loc[frame["part"] == "path", ["x", "y"]].to_numpy(dtype=float) - end)
+        near = away[away.max(axis=1) < _NEAR * np.ptp(axes.get_xlim())]
+        flat = bool(len(near)) and near[:, 0].sum() > near[:, 1].sum()
+        offset = _LETTER_OFFSET[::-1] if flat else _LETTER_OFFSET
+        place = {"xytext": offset * inwards, "textcoords": "offset points"}
         axes.annotate(letter, end, weight="bold", zorder=7, ha="center", va="center", **place)
 
 

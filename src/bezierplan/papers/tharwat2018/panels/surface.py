@@ -34,7 +34,7 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     look = {"rstride": 2, "cstride": 2, "linewidth": 0, "antialiased": False, "rasterized": True}
     axes.plot_surface(*np.meshgrid(x, y), np.log10(values), facecolors=colours, **look)
     axes.view_init(elev=45, azim=-60)
-    axes.set_box_aspect((1, 1, 0.7), zoom=0.95)
+    axes.set_box_aspect((1, 1, 0.7), zoom=0.85)
     axes.set_xlabel(f"x ({unit})", labelpad=-6)
     axes.set_ylabel(f"y ({unit})", labelpad=-6)
     axes.set_zlabel(axis_label("objective", scene), labelpad=-6)
