@@ -11,7 +11,9 @@ import pandas as pd
 import pytest
 from studies import built, studies
 
+from bezierplan.running import problems
 from bezierplan.schema.model import one_or_list
+from bezierplan.study.jobs import descriptions
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -19,7 +21,7 @@ SMOKE = Path(__file__).parents[1] / "results/smoke"
 PRINTED = Path(__file__).parent / "data" / "printed"
 EVERY = [(key, name) for key, own in studies().items() for name in own.layout]
 KINDS = {
-    "map": {"workspace", "paths", "drawing"},
+    "map": {"workspace", "problem", "drawing"},
     "schematic": {"drawing", "paths"},
     "line plot": {"along_path", "lines"},
     "surface": {"surface", "landscape"},
@@ -161,19 +163,29 @@ def test_a_paper_has_exactly_these_artefacts():
 
 
 def behind(own, name):
-    """What an artefact shows: experiments with the selection of their runs, and workspaces."""
+    """What an artefact shows: experiments with the selection of their runs, workspaces and
+    problems.
+    """
     spec = own.tables.get(name) or own.figures[name]
     for part in getattr(spec, "panels", [spec]):
         if experiment := getattr(part, "experiment", None):
             yield experiment, part.where | getattr(part, "primary", {})
-        elif home := getattr(part, "workspace", None):
-            yield None, home
+        for kind in ("workspace", "problem"):
+            if home := getattr(part, kind, None):
+                yield None, {kind: home}
 
 
 def facts(own, experiment, where):
     """Name and value of everything that print can say of the runs behind an artefact."""
+    if "problem" in where and experiment is None:
+        plain = own.every_problem()[where["problem"]]
+        if plain.get("route") in (where.get("route"), None) or "route" not in where:
+            yield from plain.items()
+            described = descriptions(own, {"it": plain})
+            yield from of_workspace(problems.build_all(described, own.folder)["it"].workspace)
+        return
     if experiment is None:
-        yield from of_workspace(files.load(own.workspaces[where].plain(), own.folder))
+        yield from of_workspace(files.load(own.workspaces[where["workspace"]].plain(), own.folder))
         return
 
     def selected(column, value):
@@ -212,11 +224,7 @@ def unmet(own, name, conditions, where):
     """Printed conditions that the runs behind an artefact do not have: name, print and ours. A
     condition that is named like a method or a route is of its runs alone.
     """
-    every = [
-        fact
-        for place, only in behind(own, name)
-        for fact in facts(own, place, only if place is None else only | where)
-    ]
+    every = [fact for place, only in behind(own, name) for fact in facts(own, place, only | where)]
     for key, printed in conditions.items():
         if isinstance(printed, dict):
             column = "method" if key in own.methods else "route"
