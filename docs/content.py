@@ -60,7 +60,7 @@ def content() -> tuple[SimpleNamespace, Path]:
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
         study.baseline = reader.with_corners(reader.of_study(tables[2], key))
-        study.outcome = page.headline.table.loc[key]
+        study.outcome = page.headline.papers.loc[key]
         if scale != SCALES[0]:
             _as_stored(study)
     return page, folder

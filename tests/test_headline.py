@@ -32,11 +32,11 @@ def claims(**verdicts):
         for study, own in verdicts.items()
         for n, each in enumerate(own)
     ]
-    return pd.DataFrame(rows).assign(primary=True, finding=False)
+    return pd.DataFrame(rows).assign(primary=True, finding=False, main=True)
 
 
 def measured(*rows):
-    names = ("study", "feasible", "feasible_baseline", "length", "cpu", "proposed")
+    names = ("study", "feasible", "feasible_baseline", "length", "curvature", "cpu", "proposed")
     return pd.DataFrame([dict(zip(names, row, strict=True)) for row in rows], columns=names)
 
 
@@ -51,31 +51,49 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
             one=["supported", "partly", "no effect"],
             two=["contradicted", "contradicted", "untestable"],
         ),
-        measured(("one", 0.9, 1.0, 0.5, 3.0, True), ("one", 1.0, 1.0, 1.0, 0.25, False)),
+        measured(
+            ("one", 0.9, 1.0, 0.5, 12.34, 3.0, True), ("one", 1.0, 1.0, 1.0, math.inf, 0.25, False)
+        ),
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
-        "3 published numbers: 1 in agreement, 1 in disagreement, 1 inconclusive.",
-        "6 claims: 1 supported, 1 supported in part, 2 contradicted, 1 without effect, "
-        "1 untestable.",
-        "Of 1 method feasible as often as the baseline, the exact shortest path with rounded "
-        "corners, none gives a shorter path.",
+        "Of 3 printed numbers 2 can be tested; 1 of these reproduces.",
+        "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 cannot be decided.",
+        "The exact shortest path with rounded corners is always free: of the 1 method that are "
+        "free as often, none gives a shorter path, and none a smoother one.",
     ]
-    assert found.table.loc["one"].to_list() == [
-        *("1, 1, 0", "1 of 2", "1, 1, 1, 0"),
-        *("90 %", "0.5", "3"),
-    ]
-    assert found.table.loc["two"].to_list() == ["0, 0, 1", "1 of 1", "0, 0, 2, 1", "", "", ""]
-    assert len(found.table.columns) + 1 <= 7
+    assert found.papers.loc["one"].to_list() == ["in part", *"21", "1 of 2", *"1110"]
+    assert found.papers.loc["two"].to_list() == ["not reproduced", *"00", "1 of 1", *"0021"]
+    assert found.methods.loc["one"].to_list() == ["90 %", "0.5 ×", "12 ×", "3 ×"]
 
 
-def test_a_shorter_path_of_a_method_as_reliable_as_the_baseline_is_said():
-    assert headline.beside_baseline(
-        measured(("one", 1.0, 1.0, 0.9, 1.0, True), ("one", 1.0, 1.0, 1.2, 1.0, False))
-    ).endswith("1 gives a shorter path.")
-    assert headline.beside_baseline(measured(("one", 0.5, 1.0, 0.9, 1.0, True))).startswith(
-        "Of 0 methods feasible as often as the baseline"
+@pytest.mark.parametrize(
+    ("verdicts", "word"),
+    [
+        (["supported", "depends", "untestable"], "reproduced"),
+        (["supported", "contradicted"], "in part"),
+        (["no effect", "partly"], "in part"),
+        (["no effect", "contradicted", "undecided"], "not reproduced"),
+        (["depends", "untestable"], "cannot be told"),
+        ([], "cannot be told"),
+    ],
+)
+def test_a_paper_has_one_word_by_its_main_claims(verdicts, word):
+    own = claims(one=[*verdicts, "contradicted"])
+    own["main"] = [True] * len(verdicts) + [False]
+    assert headline.word(own) == word
+
+
+def test_what_a_method_as_reliable_as_the_baseline_gives_is_said():
+    text = headline.beside_baseline(
+        measured(
+            ("one", 1.0, 1.0, 0.9, 2.0, 1.0, True),
+            ("one", 1.0, 1.0, 1.2, 0.1, 1.0, False),
+            ("two", 1.0, 1.0, 1.05, 0.5, 1.0, False),
+            ("two", 0.5, 1.0, 0.5, 0.5, 1.0, False),
+        )
     )
+    assert text.endswith("1 gives a shorter path, and 2 a smoother one, 1.05 to 1.2 times as long.")
     assert headline.beside_baseline(measured()) == ""
 
 
@@ -96,6 +114,7 @@ def test_markdown_leaves_out_what_no_study_has():
         )
     )
     assert text.startswith(
-        "**1 published number: 1 in agreement. 1 claim: 1 supported.**\n\n| study | numbers"
+        "**Of 1 printed number 1 can be tested; 1 of these reproduces. Of 1 claim"
     )
-    assert "length" not in text.splitlines()[2]
+    assert "| reproduced | 1 | 1 | 1 of 1 | 1 | 0 | 0 | 0 |" in text
+    assert headline.BESIDE not in text

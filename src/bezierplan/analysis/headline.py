@@ -2,6 +2,8 @@
 summary show first.
 """
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -10,24 +12,39 @@ import pandas as pd
 from bezierplan.analysis import baseline_comparison, comparison, words
 from bezierplan.analysis.markdown import table_text
 
-COLUMNS = {
-    "numbers": f"numbers: {', '.join(dict.fromkeys(words.groups('number').values()))}",
-    "close": "within 10 %",
-    "claims": f"claims: {', '.join(dict.fromkeys(words.groups('claim').values()))}",
-    "feasible": "proposed method: free paths",
-    "length": "its length",
-    "cpu": "its CPU time",
+PAPERS = {
+    "word": "outcome",
+    "tested": "numbers that can be tested",
+    "agree": "of these reproduce",
+    "close": "ours within 10 %",
+    "hold": "claims that hold",
+    "partly": "hold in part",
+    "fail": "fail",
+    "open": "cannot be decided",
 }
-"""Columns of the table -> their headings; the name of the study stands before them."""
+"""Columns of the table of papers -> their headings; the name of the study stands before them."""
+
+METHODS = {
+    "feasible": "free paths",
+    "length": "length",
+    "curvature": "tightest bend",
+    "cpu": "CPU time",
+}
+"""Columns of the table of proposed methods -> their headings, likewise."""
 
 LEGEND = (
-    "*agree*: inside our 95 % prediction interval for an experiment of the paper's size, which "
-    "must exclude a number that a run could have, such as most of those printed for competing "
-    "methods; or *identified*, the length of a path that we can name. *open*: the paper does not "
-    "print the map or define the quantity, or the interval is too wide; a claim is open if it is "
-    "undecided, untestable, or depends on what the paper leaves open. *fail*: contradicted, or no "
-    "effect. Length and CPU time of the proposed method are medians over those of the exact "
-    "shortest path with rounded corners, which needs no search and is always free."
+    "A paper's word is made from the claims of its abstract and conclusion: *reproduced* if all "
+    "of them that can be decided hold, *not reproduced* if none does, even in part. A number "
+    "*reproduces* if it lies inside our 95 % prediction interval for an experiment of the paper's "
+    "size, and the interval is narrow enough to rule out other plausible values; or if it is the "
+    "length of a path that we can name. The others *cannot be tested*: the paper does not print "
+    "the map or define the quantity, or the interval is too wide."
+)
+
+BESIDE = (
+    "The proposed methods beside the exact shortest path with rounded corners, which needs no "
+    "search and is always free: medians of length, largest curvature and CPU time, as multiples of "
+    "its own. A small bend is smooth."
 )
 
 CLOSE = 0.1
@@ -35,12 +52,13 @@ CLOSE = 0.1
 
 
 class Headline(NamedTuple):
-    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. table:
-    by study, text in `COLUMNS`.
+    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. papers,
+    methods: by study, text in `PAPERS` and `METHODS`.
     """
 
     sentences: list[str]
-    table: pd.DataFrame
+    papers: pd.DataFrame
+    methods: pd.DataFrame
 
 
 def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
@@ -69,29 +87,64 @@ def headline(
     `baseline_comparison.measured`, of all studies. titles: of the studies, by name.
     """
     counts = outcome(numbers, claims)
+    grouped = {what: _grouped(counts, what) for what in ("number", "claim")}
     sentences = [
-        _sentence("published number", counts[[*words.on("number")]].sum()),
-        _sentence("claim", counts[[*words.on("claim")]].sum()) + _by_our_criterion(claims),
+        _of_numbers(grouped["number"].sum()),
+        _of_claims(grouped["claim"].sum()) + _by_our_criterion(claims),
         beside_baseline(measures),
     ]
-    counted = numbers[numbers["counted"].astype(bool)]
-    rows = {
-        study: {
-            "numbers": _grouped(row, "number"),
-            "close": _close(deviations(counted[counted["study"] == study])),
-            "claims": _grouped(row, "claim"),
-            **_measured(measures[measures["study"] == study]),
-        }
-        for study, row in counts.loc[sorted(counts.index, key=list(titles).index)].iterrows()
-    }
-    table = pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS)).rename_axis("study")
-    return Headline([sentence for sentence in sentences if sentence], table)
+    tested, counted = grouped["number"], numbers[numbers["counted"].astype(bool)]
+    papers = grouped["claim"].assign(
+        word=[word(claims[claims["study"] == study]) for study in counts.index],
+        tested=tested["agree"] + tested["disagree"],
+        agree=tested["agree"],
+        close=[_close(deviations(counted[counted["study"] == study])) for study in counts.index],
+    )
+    order = sorted(counts.index, key=list(titles).index)
+    proposed = measures[measures["proposed"].astype(bool)].set_index("study")
+    methods = pd.DataFrame.from_dict(
+        {study: _measured(proposed.loc[study]) for study in order if study in proposed.index},
+        orient="index",
+        columns=list(METHODS),
+    )
+    papers = papers.loc[order, list(PAPERS)].astype(str)
+    return Headline(
+        [sentence for sentence in sentences if sentence],
+        papers.rename_axis("study"),
+        methods.rename_axis("study"),
+    )
 
 
-def markdown(head: Headline) -> str:
-    """The headline as markdown: the sentences, the table, and what its words mean."""
-    shown = head.table.loc[:, (head.table != "").any()].rename(columns=COLUMNS)
-    return "\n\n".join([f"**{' '.join(head.sentences)}**", table_text(shown), LEGEND])
+def word(claims: pd.DataFrame) -> str:
+    """A paper in a word, from its claims of abstract and conclusion: whether all of those that can
+    be decided hold, or none.
+    """
+    main = claims[claims["primary"] & claims["main"].astype(bool)]
+    groups = main["verdict"].map(words.groups("claim"))
+    decided = groups[groups != "open"]
+    if decided.empty:
+        return "cannot be told"
+    if (decided == "hold").all():
+        return "reproduced"
+    return "not reproduced" if (decided == "fail").all() else "in part"
+
+
+def markdown(head: Headline, addresses: Mapping[str, str] = MappingProxyType({})) -> str:
+    """The headline as markdown: the sentences, the tables, and what their words mean. addresses: of
+    the studies' pages, by name.
+    """
+    parts = [f"**{' '.join(head.sentences)}**"]
+    for table, headings, legend in (
+        (head.papers, PAPERS, LEGEND),
+        (head.methods, METHODS, BESIDE),
+    ):
+        if not table.empty:
+            shown = table.rename(
+                columns=headings,
+                index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
+            )
+            parts += [table_text(shown), legend]
+    return "\n\n".join(parts)
 
 
 def deviations(numbers: pd.DataFrame) -> np.ndarray:
@@ -109,29 +162,47 @@ def deviations(numbers: pd.DataFrame) -> np.ndarray:
 
 
 def beside_baseline(measures: pd.DataFrame) -> str:
-    """Whether a method that is feasible as often as the baseline gives a shorter path; empty
-    without methods.
+    """Whether a method that is feasible as often as the baseline gives a shorter path, and how many
+    give a smoother one at which cost in length; empty without methods.
     """
+    if measures.empty:
+        return ""
+    number = baseline_comparison.number
     reliable = measures[measures["feasible"] >= measures["feasible_baseline"]]
     shorter = int((reliable["length"] < 1 - baseline_comparison.EQUAL).sum())
+    smoother = reliable[reliable["curvature"] < 1 - baseline_comparison.EQUAL]
+    text = (
+        f"{baseline_comparison.BASELINE.capitalize()} is always free: of the "
+        f"{baseline_comparison.counted(len(reliable), 'method')} that are free as often, "
+        f"{shorter or 'none'} {'give' if shorter > 1 else 'gives'} a shorter path"
+    )
+    if smoother.empty:
+        return f"{text}, and none a smoother one."
+    ends = [number(smoother["length"].agg(end)) for end in ("min", "max")]
+    times = ends[0] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
+    return f"{text}, and {len(smoother)} a smoother one, {times} times as long."
+
+
+def _of_numbers(counts: pd.Series) -> str:
+    """How many printed numbers can be tested, and how many reproduce. counts: by group."""
+    total, agree = int(counts.sum()), int(counts["agree"])
     return (
-        ""
-        if measures.empty
-        else (
-            f"Of {baseline_comparison.counted(len(reliable), 'method')} feasible as often as the "
-            f"baseline, {baseline_comparison.BASELINE}, {shorter or 'none'} "
-            f"{'give' if shorter > 1 else 'gives'} a shorter path."
-        )
+        f"Of {baseline_comparison.counted(total, 'printed number')} {agree + counts['disagree']} "
+        f"can be tested; {agree} of these {'reproduces' if agree == 1 else 'reproduce'}."
+        if total
+        else ""
     )
 
 
-def _sentence(noun: str, counts: pd.Series) -> str:
-    """How many things have each verdict, in words; empty without things."""
-    total = int(counts.sum())
-    parts = [
-        f"{count} {words.WORDS[verdict].counted}" for verdict, count in counts.items() if count
-    ]
-    return f"{baseline_comparison.counted(total, noun)}: {', '.join(parts)}." if total else ""
+def _of_claims(counts: pd.Series) -> str:
+    """How many claims hold, and how many fail. counts: by group."""
+    return (
+        f"Of {baseline_comparison.counted(int(counts.sum()), 'claim')} {counts['hold']} hold, "
+        f"{counts['partly']} hold in part, {counts['fail']} fail, and {counts['open']} cannot be "
+        "decided."
+        if counts.any()
+        else ""
+    )
 
 
 def _by_our_criterion(claims: pd.DataFrame) -> str:
@@ -144,29 +215,27 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
     count = int((deciding["verdict"].map(words.groups("claim")) == "fail").sum())
     if not count:
         return ""
-    fails = f"{baseline_comparison.counted(count, 'claim')} {'fails' if count == 1 else 'fail'}"
-    return f" {fails} only by our own criterion, because the paper gives no number."
-
-
-def _grouped(counts: pd.Series, what: str) -> str:
-    """How many numbers or claims count as each group; empty without any. counts: by verdict."""
-    groups = words.groups(what)
-    found = counts[[*groups]].groupby(groups, sort=False).sum()
-    return ", ".join(map(str, found)) if found.any() else ""
+    return f" The limit by which {count} of them fail is ours: the paper gives none."
 
 
 def _close(off: np.ndarray) -> str:
     return f"{int((off <= CLOSE).sum())} of {len(off)}" if len(off) else ""
 
 
-def _measured(rows: pd.DataFrame) -> dict[str, str]:
-    """The study's proposed method beside the baseline."""
-    own = rows[rows["proposed"].astype(bool)]
-    if own.empty:
-        return dict.fromkeys(("feasible", "length", "cpu"), "")
-    number, (row,) = baseline_comparison.number, own.to_dict("records")
-    return {
-        "feasible": f"{number(100 * row['feasible'])} %",
-        "length": "" if np.isnan(row["length"]) else number(row["length"]),
-        "cpu": number(row["cpu"], 2),
-    }
+def _grouped(counts: pd.DataFrame, what: str) -> pd.DataFrame:
+    """How many numbers or claims of each study count as each group. counts: by verdict."""
+    groups = words.groups(what)
+    return counts[[*groups]].T.groupby(groups, sort=False).sum().T
+
+
+def _measured(row: pd.Series) -> dict[str, str]:
+    """A proposed method beside the baseline."""
+    shown = {"feasible": f"{baseline_comparison.number(100 * row['feasible'])} %"}
+    for name in ("length", "curvature", "cpu"):
+        value = row[name]
+        shown[name] = (
+            f"{baseline_comparison.number(value, 3 if name == 'length' else 2)} ×"
+            if np.isfinite(value)
+            else ("corners" if np.isinf(value) else "")
+        )
+    return shown

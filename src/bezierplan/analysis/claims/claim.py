@@ -44,6 +44,11 @@ class Claim(Model):
     finding: Literal[True] = Field(
         None, description="true: our own finding, no sentence of the paper; left out otherwise"
     )
+    main: Literal[True] = Field(
+        None,
+        description="true: the abstract or the conclusion says it, so that it decides whether the "
+        "paper counts as reproduced; left out otherwise",
+    )
     scale: Literal["extended"] = Field(
         None,
         description="extended: judged at that scale alone, for the paper has nothing that its runs "

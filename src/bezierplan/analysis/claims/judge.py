@@ -133,6 +133,7 @@ def _judge_variant(
         "variant": variant,
         "artefact": ", ".join(claim.artefacts),
         "finding": bool(claim.finding),
+        "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
         "timed": any(
             _is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1

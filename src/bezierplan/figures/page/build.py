@@ -158,7 +158,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "answer": answer,
         "baseline": baseline_comparison.BASELINE,
         "charts": charts,
-        "columns": headline.COLUMNS,
+        "overview": lambda head: [(head.papers, headline.PAPERS), (head.methods, headline.METHODS)],
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
         "grid": grid,
         "marks": MARKS,
