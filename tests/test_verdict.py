@@ -33,7 +33,8 @@ def test_sentences_follow_from_the_kept_outcome(kept, study):
     found = verdict.sentences(template, verdict.own_rows(kept, study))
     assert 2 <= len(found) <= 5
     assert [each.fails for each in found] == [None] * len(found)
-    text = (KEPT / "summary.md").read_text(encoding="utf-8")
+    text = (KEPT / f"{study}.md").read_text(encoding="utf-8")
+    assert len(text.split()) <= 900
     assert all(each.text in text for each in found)
 
 

@@ -229,6 +229,14 @@ def of_readings(scale, studies, *names):
     ]
 
 
+def evidence(scale, studies):
+    """What sentences take from many runs alone."""
+    return [
+        *of_readings(scale, studies, "readings"),
+        *([f"results/{scale}/worth.csv"] if scale == "extended" else []),
+    ]
+
+
 def shown(wildcards):
     """Files of a scale that the page shows: what the papers have, and of the rest what there is."""
     artefacts = [

@@ -45,7 +45,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        readings=lambda wildcards: of_readings(wildcards.scale, READ, "readings"),
+        evidence=lambda wildcards: evidence(wildcards.scale, READ),
         sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -75,7 +75,7 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        readings=lambda wildcards: of_readings(wildcards.scale, {wildcards.study}, "readings"),
+        evidence=lambda wildcards: evidence(wildcards.scale, {wildcards.study}),
         sources=sources(of(jobs.verdict)),
     output:
         report(

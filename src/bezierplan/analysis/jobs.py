@@ -379,7 +379,7 @@ class Summary(Job):
             input_files.baseline_comparison,
             dict(zip(self.verdicts, input_files.sources, strict=True)),
             list(input_files.audits),
-            list(input_files.readings),
+            list(input_files.evidence),
             self.scale,
         )
         for table in ("numbers", "claims", "wholes"):
@@ -401,8 +401,7 @@ class Verdict(Job):
 
         tables = [pd.read_csv(file) for file in input_files.summary]
         files = {self.study: input_files.sources[0]}
-        readings = list(input_files.readings)
-        texts = summary.verdicts(*tables, files, [input_files.audit], readings)
+        texts = summary.verdicts(*tables, files, [input_files.audit], list(input_files.evidence))
         Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 
 

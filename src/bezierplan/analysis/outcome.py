@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import benchmark, headline, summary
+from bezierplan.analysis import benchmark, headline, summary, words
+from bezierplan.analysis.markdown import table_text
+from bezierplan.running.inputs import PAPER
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -21,10 +23,12 @@ BLOCK = "outcome"
 AUDIT, READINGS = "audit.csv", ("readings.csv", "claims_by_reading.csv")
 BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
-SCALES = {
-    "full": "the papers' own numbers of runs.",
-    "extended": "a verdict is about a method, not about the few runs that a paper could afford.",
-}
+SCALE = "a verdict is about a method, not about the few runs that a paper could afford."
+LAID = (
+    "In each cell below the printed number stands before ours, of many runs: + agrees, x "
+    "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
+    "name."
+)
 
 
 def write(
@@ -32,12 +36,14 @@ def write(
     verdicts: Mapping[str, str],
     settings: pd.DataFrame,
     experiments: Iterable[str],
+    tables: Mapping[str, Mapping[str, tuple[str, int]]],
 ) -> None:
-    """Write the tables of docs/outcome and the README's part. Raises FileNotFoundError if results
-    are missing.
+    """Write the tables of docs/outcome, a page for each paper, and the README's part. Raises
+    FileNotFoundError if results are missing.
 
     titles: of studies, by name. verdicts: the files of their sentences. settings: of their methods.
-    experiments: those on whose problems others can be scored, each `study/name`.
+    experiments: those on whose problems others can be scored, each `study/name`. tables: of each
+    study those with printed numbers, name -> title, and how many columns name the rows.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
@@ -55,19 +61,60 @@ def write(
     scored = benchmark.of_results(FULL, experiments)
     scored.to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
     follow = following(KEPT, verdicts, numbers, claims, measured)
-    whole = pd.read_csv(KEPT / WHOLES)
-    report = summary.report(numbers, claims, measured, whole, titles, follow, RESULTS.name)
-    (KEPT / "summary.md").write_text(report, encoding="utf-8")
+    for key, text in follow.items():
+        page = paper(titles[key], text, claims[claims["study"] == key], RESULTS / key, tables[key])
+        (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
     readme = summary.with_block(readme, BLOCK, table(KEPT, titles, verdicts))
     README.write_text(readme, encoding="utf-8")
 
 
+def paper(
+    title: str,
+    text: str,
+    claims: pd.DataFrame,
+    folder: Path,
+    tables: Mapping[str, tuple[str, int]],
+) -> str:
+    """The page of a paper, as markdown: its word and what follows, its main claims, and its tables
+    with the printed number beside ours in each cell.
+
+    text: as from `following`. folder: of the study's results. tables: as for `write`.
+    """
+    shown = ["id", "statement", "verdict", "where_it_holds"]
+    main = claims.loc[claims["primary"] & claims["main"].astype(bool), shown].fillna("")
+    parts = [
+        f"# {title}",
+        f"**{headline.word(claims).capitalize()}.** {text.strip()}",
+        "## What abstract and conclusion claim",
+        table_text(main.set_index("id")),
+        f"The other claims stand in [claims.csv](claims.csv). {LAID}",
+    ]
+    for name, (table_title, heads) in tables.items():
+        ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
+        numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
+        laid = _beside(ours, numbers.dropna(subset="table_row"), heads)
+        parts += [f"## {name.capitalize()}: {table_title}", table_text(laid)]
+    return "\n\n".join(parts) + "\n"
+
+
+def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
+    """A table with the printed number before ours in each cell, and the sign of its verdict."""
+    cells = ours.iloc[:, heads:].to_numpy()
+    for number in numbers.to_dict("records"):
+        place = int(number["table_row"]), int(number["table_column"])
+        sign = words.WORDS[number["verdict"]].sign if number["verdict"] in words.WORDS else ""
+        named = " =" if isinstance(number["identified"], str) else ""
+        cells[place] = f"{number['as_printed']}{named} / {cells[place]} {sign}".rstrip()
+    names = ours.iloc[:, :heads].agg(", ".join, axis=1)
+    return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
+
+
 def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
-    readings = sorted(map(str, folder.glob(f"*_{READINGS[0]}")))
-    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, readings)
+    evidence = sorted(map(str, [*folder.glob(f"*_{READINGS[0]}"), *folder.glob(WORTH)]))
+    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, evidence)
 
 
 def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:
@@ -79,10 +126,9 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) 
         f"- {titles[key].partition(':')[0]}: {first_sentence(text)}"
         for key, text in following(folder, verdicts, *tables).items()
     )
-    heading = (folder / "summary.md").read_text(encoding="utf-8").splitlines()[0]
-    scale = heading.removeprefix(summary.HEADING)
-    overview = headline.markdown(headline.headline(*tables, titles))
-    return f"{overview}\n\n{follow}\n\nScale `{scale}`: {SCALES[scale]}"
+    pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
+    overview = headline.markdown(headline.headline(*tables, titles), pages)
+    return f"{overview}\n\n{follow}\n\nScale `{RESULTS.name}`: {SCALE}"
 
 
 def first_sentence(text: str) -> str:

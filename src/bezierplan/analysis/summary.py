@@ -4,6 +4,7 @@ confirmed.
 
 import itertools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -36,19 +37,19 @@ def gathered(
     baseline_comparison_file: str,
     verdict_files: dict[str, str],
     audit_files: list[str],
-    readings_files: list[str],
+    evidence: list[str],
     scale: str,
 ) -> Summary:
     """The summary of all studies. comparison_files: by study and table. wholes_files: of the
     same tables. titles: of the studies. verdict_files: by study. audit_files: of the same studies.
-    readings_files: of those whose readings were scored.
+    evidence: files of readings, and of methods beside a generic optimiser, as far as there are any.
     """
     everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
     claims = read_claims(claims_files)
     measured = pd.read_csv(baseline_comparison_file)
     whole = pd.concat(map(pd.read_csv, wholes_files), ignore_index=True)
     tables = (everything, claims, measured, whole)
-    follow = verdicts(*tables, verdict_files, audit_files, readings_files)
+    follow = verdicts(*tables, verdict_files, audit_files, evidence)
     text = report(*tables, titles, follow, scale)
     return Summary(everything, claims, whole, text)
 
@@ -60,15 +61,16 @@ def verdicts(
     whole: pd.DataFrame,
     files: dict[str, str],
     audit_files: list[str],
-    readings_files: list[str],
+    evidence: list[str],
 ) -> dict[str, str]:
     """By study, what follows. files: that of its sentences; the others as in `gathered`."""
     if not files:
         return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
     tables = {"numbers": numbers, "claims": claims, "baseline": measures, "audit": audits}
-    if readings_files:
-        tables["readings"] = pd.concat(map(pd.read_csv, readings_files), ignore_index=True)
+    for name in ("readings", "worth"):
+        if own := [file for file in evidence if Path(file).stem.endswith(name)]:
+            tables[name] = pd.concat(map(pd.read_csv, own), ignore_index=True)
     return verdict.of_studies(files, tables | {"wholes": whole})
 
 

@@ -25,7 +25,7 @@ TAKES = {
     "count": len,
     "only": pd.Series.item,
 }
-Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "readings"]
+Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "readings", "worth"]
 
 
 class Value(Model):

@@ -25,7 +25,15 @@ def main() -> None:
         [(key, *row) for key, each in studies.items() for row in settings_of(each)],
         columns=["study", "method", "setting", "value"],
     )
-    outcome.write(*named(studies), settings, scored(studies))
+    tables = {
+        key: {
+            name: (study.tables[name].title, len(study.tables[name].index))
+            for name, table in study.compared().items()
+            if table.published and table.printed
+        }
+        for key, study in studies.items()
+    }
+    outcome.write(*named(studies), settings, scored(studies), tables)
     for picture in PICTURES:
         study, _, name = picture.split("/")
         shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
