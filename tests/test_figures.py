@@ -682,13 +682,9 @@ def test_each_bar_is_as_high_as_its_statistic():
     axes = axes_of(bars, frame, x="points", hue="method", metric="length", context=True)
     heights = [[bar.get_height() for bar in group] for group in axes.containers[:2]]
     assert heights == [[4, 5, 7], [104, 105, 107]]
-    ends = sorted(
-        {tuple(sorted(set(line.get_ydata()))) for line in axes.lines if len(line.get_ydata())}
-    )
-    for low, high in [(1, 8), (2, 9), (3, 10), (101, 108), (102, 109), (103, 110)]:
-        assert (low, high) in ends
-    places = [at for drawn in axes.collections for at in np.ma.filled(drawn.get_offsets(), np.nan)]
-    assert next(at for at in places if at[1] == 104.5)[0] == pytest.approx(2.2), "on its bar"
+    assert spans(axes)[:6] == [[1, 8], [2, 9], [3, 10], [101, 108], [102, 109], [103, 110]]
+    at, heights = labelled(axes, "published")
+    assert dict(zip(heights, at))[104.5] == pytest.approx(2.2), "on its bar"
     assert [0.5, 0.5] in spans(axes)
 
 
@@ -907,3 +903,12 @@ def test_a_figure_says_in_the_last_line_of_its_caption_what_is_plain_to_the_eye(
     assert "lowest mean length in 3 of 3: coarse, highest mean length in 3 of 3: random" in last
     assert "(e) lowest median: coarse (27), highest: random (47)" in last
     assert "\n" not in drawn(results(), CURVATURE).get_label(), "nothing is compared"
+
+
+def test_a_bar_that_is_missing_says_so_and_a_logarithmic_axis_has_points():
+    frame = BOTH.assign(bound=np.nan, published=np.nan, value=[4.0, np.nan, 7.0, 1.0, 2.0, 3.0])
+    keys = {"x": "points", "hue": "method", "metric": "length"}
+    assert [text.get_text() for text in axes_of(bars, frame, **keys).texts] == ["no free path"]
+    axes = axes_of(bars, frame, **keys, scale="log")
+    assert not axes.patches
+    assert labelled(axes, "b")[1] == [1, 2, 3]

@@ -111,28 +111,6 @@ def test_reference_is_the_length_of_a_path_that_can_be(name):
     assert checker.check(curves.bezier_pieces(path), region(grid)).feasible
 
 
-@pytest.mark.parametrize(
-    ("workspace", "name"), [("environment1", "environment1"), ("environment2", "environment2")]
-)
-def test_settings_are_those_of_section_4(workspace, name):
-    parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"][workspace]
-    settings = STUDY["settings"] | STUDY["problems"][name].get("settings", {})
-    printed = {
-        "population": "population_size",
-        "generations": "maximum_generation",
-        "crossover_probability": "crossover_probability",
-        "mutation_probability": "mutation_probability",
-        "length_weight": "weight_length",
-        "safety_weight": "weight_safety",
-        "safety_distance": "safety_distance",
-    }
-    assert {setting: settings[setting] for setting in printed} == {
-        setting: parameters[key] for setting, key in printed.items()
-    }
-    assert STUDY["experiments"]["environments"]["repeats"]["full"] == parameters["runs"]
-    assert settings["iterations"] == settings["generations"]
-
-
 def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
     """The lengths of curves with eight free control points, of which claim C21 asks how near they
     come.

@@ -30,6 +30,9 @@ _HEIGHT = 0.45
 # Of the bars at a place, as a share of its room.
 _WIDTH = 0.8
 
+# In the place of a bar.
+_NO_PATH = "no free path"
+
 
 class Options(MetricPanel):
     x: Column = Field(description="a column of the runs table: a place for each of its values")
@@ -69,65 +72,24 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in the order of the panel's `where`."""
-    import seaborn as sns
-
     x, hue, labels = options.x, options.hue, scene.labels
     places = style.in_order(frame[x], options.where)
     names = [labels.get(at, at) if isinstance(at, str) else f"{at:g}" for at in places]
     groups = style.groups(frame, hue, options.where, scene)
-    # By their printed names: as numbers, seaborn would not find them again.
-    named = frame.assign(
-        x=frame[x].map(dict(zip(places, names))),
-        hue=frame[hue].map({value: look["label"] for value, _, look in groups}),
-    )
-    colours = {look["label"]: look["color"] for _, _, look in groups}
-    layout = {"x": "x", "hue": "hue", "order": names, "hue_order": list(colours), "ax": axes}
-    layout["legend"] = False
-    # Each statistic with the ends of its interval: their median and their range.
-    long = named.melt(["x", "hue"], ["value", "low95", "high95"], value_name="end")
-    error = {"errorbar": ("pi", 100), "err_kws": {"linewidth": 0.8, "color": "0.1"}}
-    if options.scale == "linear":
-        sns.barplot(
-            long, y="end", estimator="median", palette=colours, saturation=1, **layout, **error
-        )
-        for label, colour in colours.items():
-            axes.bar(0, 0, color=colour, label=label)
-    else:  # the length of a bar would mean nothing
-        marks = [look["marker"] for _, _, look in groups]
-        dodge = _WIDTH * (1 - 1 / len(groups))
-        sns.pointplot(
-            long,
-            y="end",
-            estimator="median",
-            palette=colours,
-            linestyle="none",
-            markers=marks,
-            markersize=4,
-            dodge=dodge,
-            **layout,
-            **error,
-        )
-        for label, mark in zip(colours, marks):
-            axes.plot([], [], **style.mark(mark, 4, colours[label], label=label))
-    for place, bar in named[named["value"].isna()][["x", "hue"]].itertuples(index=False):
-        shift = (list(colours).index(bar) + 0.5) / len(colours) - 0.5
-        axes.text(
-            names.index(place) + _WIDTH * shift,
-            0.02,
-            "no free path",
-            transform=axes.get_xaxis_transform(),
-            rotation=90,
-            ha="center",
-            va="bottom",
-            color=colours[bar],
-        )
-    if frame["published"].notna().any():
-        mark = {"marker": "D", "edgecolor": style.BLACK, "linewidth": 0.9, "size": 3.5}
-        white = dict.fromkeys(colours, style.FREE)
-        sns.stripplot(
-            named, y="published", palette=white, dodge=True, jitter=False, **layout, **mark
-        )
-        axes.plot([], [], label="published", **style.PUBLISHED_MARK)
+    width = _WIDTH / len(groups)
+    for number, (_, rows, look) in enumerate(groups):
+        at = rows[x].map(places.index) + width * (number + 0.5) - _WIDTH / 2
+        if options.scale == "linear":
+            axes.bar(at, rows["value"], width, color=look["color"], label=look["label"])
+        else:  # the length of a bar would mean nothing
+            axes.plot(at, rows["value"], zorder=3, **look | {"linestyle": ""})
+        axes.vlines(at, rows["low95"], rows["high95"], color="0.1", linewidth=0.8, zorder=4)
+        if rows["published"].notna().any():
+            mark = style.PUBLISHED_MARK | {"markersize": 3.5, "zorder": 5}
+            axes.plot(at, rows["published"], label="published", **mark)
+        words = {"rotation": 90, "ha": "center", "va": "bottom", "color": look["color"]}
+        for place in at[rows["value"].isna()]:
+            axes.annotate(_NO_PATH, (place, 0.02), xycoords=("data", "axes fraction"), **words)
     axes.plot([], [], **style.INTERVAL)
     bounds = frame.groupby(x)["bound"].mean()[places].dropna()
     if options.context and len(bounds):
