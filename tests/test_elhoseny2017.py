@@ -212,7 +212,8 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     ("key", "reconstructed"),
     [
         ("song2016", set()),
-        ("tharwat2018", {"table3", "table4", "table5"}),
+        ("tharwat2018", {"table3", "table4", "table5", "table6"}),
+        ("elhoseny2017", {"table2", "table3", "table5", "table6"}),
         ("meledje", {"table2", "table3", "table4", "table5"}),
         ("ma2020", {"table1", "table2"}),
     ],

@@ -443,15 +443,16 @@ def test_published_minimum_between_the_bound_and_ours_cannot_fail():
 
 
 @pytest.mark.parametrize(
-    ("why", "changed", "defined", "reconstructed"),
+    ("why", "changed", "defined", "given"),
     [
-        (comparison.UNDEFINED, {}, False, False),
-        (comparison.NO_MAP, {}, True, True),
-        (comparison.ONE_DRAW, {"layout": 3}, True, False),
+        (comparison.UNDEFINED, {}, False, ()),
+        (comparison.NO_MAP, {}, True, (True,)),
+        (comparison.ONE_DRAW, {"layout": 3}, True, ()),
+        (comparison.FITTED, {}, True, (False, {"length": {"method": ["fast"]}})),
     ],
 )
 def test_what_is_not_the_paper_s_quantity_or_map_is_inconclusive_wherever_it_lies(
-    why, changed, defined, reconstructed
+    why, changed, defined, given
 ):
     values = [entry | {"defined": defined} for entry in SPEC["values"]]
     ours = results()._replace(runs=results().runs.assign(**changed))
@@ -467,7 +468,7 @@ def test_what_is_not_the_paper_s_quantity_or_map_is_inconclusive_wherever_it_lie
             {"faster": "fast"},
             [],
             "study/table1",
-            reconstructed,
+            *given,
         )
         found = row(table, "long", "plain", "length")
         assert (found["verdict"], found["why"]) == ("inconclusive", why)

@@ -31,8 +31,8 @@ number. Columns:
 - identified: cells or moves of the paths whose length the published number is (`identified`), and
   the chance of a match
 - verdict: on ours: disagrees; inconclusive; agrees
-- why: why it is inconclusive: not defined by the paper, on a map that it does not print, or the
-  interval has no end there, or contains most of the numbers that matter
+- why: why it is inconclusive: it decides nothing (`decides_nothing`), or the interval has no end
+  there, or contains most of the numbers that matter
 - possible: whether the metric can have the published value, and ranks add up. A length below the
   bound of our map is judged all the same
 - share_feasible: share of all runs whose path the certified checker accepts
@@ -83,13 +83,11 @@ OFF_OURS = f"interval that contains the number {100 * MATTERS:g} % off ours, or 
 against printed numbers, or against ours.
 """
 
+FITTED = "number to which something was fitted"
+ONE_DRAW = "one draw of a random map"
+NO_MAP = "map that the paper does not print"
 UNDEFINED = "quantity that the paper does not define"
-"""Why a number is inconclusive wherever it lies: if it disagrees, that refutes our definition
-alone.
-"""
-
-NO_MAP, ONE_DRAW = "map that the paper does not print", "one draw of a random map"
-"""Why a number is inconclusive however far it lies: our runs are on another map."""
+"""Why a number decides nothing, wherever it lies (`decides_nothing`)."""
 
 COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published"),
@@ -126,6 +124,7 @@ def compare(
     baselines: list[str],
     name: str,
     reconstructed: bool = False,
+    votes: dict[str, dict] | None = None,
 ) -> pd.DataFrame:
     """The published numbers of a table next to ours, in the order of the table; the columns are
     described above.
@@ -133,7 +132,8 @@ def compare(
     published: as from `read_published`. variant_of: method -> the
     method whose published numbers it is compared with. baselines: methods without a published
     number. Variants of the table's methods and baselines get rows, whether or not the table shows
-    them. name: `study/table`, which seeds each row's random draws.
+    them. name: `study/table`, which seeds each row's random draws. reconstructed, votes: as in
+    `decides_nothing`.
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
@@ -169,19 +169,43 @@ def compare(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
-    vague = {entry.metric for entry in spec.values if not entry.defined}
-    for reason, whose in (
-        (ONE_DRAW, both["draws"].eq(1)),
-        (NO_MAP, pd.Series(reconstructed, table.index)),
-        (UNDEFINED, both["metric"].isin(vague)),
-    ):
-        whose &= table["in_range"].notna()
-        table["verdict"] = table["verdict"].mask(whose, "inconclusive")
-        table["why"] = table["why"].mask(whose, reason)
+    reasons = decides_nothing(both, spec, reconstructed, votes)
+    open_ones = (reasons != "") & table["in_range"].notna()
+    table["verdict"] = table["verdict"].mask(open_ones, "inconclusive")
+    table["why"] = table["why"].mask(open_ones, reasons)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
     whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
     marks = ("in_range", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
+
+
+def decides_nothing(
+    numbers: pd.DataFrame, spec: Pivot, reconstructed: bool, votes: dict[str, dict] | None
+) -> pd.Series:
+    """Why each number of a table neither agrees nor disagrees with ours, wherever it lies; empty if
+    it may. The rule of evidence:
+
+    - A quantity that the paper does not define, or a map that it does not print (`reconstructed`,
+      or one draw of a random one), decides nothing: our definition or our map may be wrong. How
+      near such numbers are is told, and a path that has such a length is named.
+    - A number to which something was fitted has no vote. votes: metric -> which numbers of the
+      table have one (column -> value or list of values); None for a table to which nothing was
+      fitted.
+    """
+    vague = {entry.metric for entry in spec.values if not entry.defined}
+    voting = [
+        select(numbers, where | {"metric": metric}) for metric, where in (votes or {}).items()
+    ]
+    voted = numbers.index.isin([index for each in voting for index in each.index])
+    reasons = pd.Series("", numbers.index)
+    for reason, whose in (
+        (FITTED, ~voted & (votes is not None)),
+        (ONE_DRAW, numbers["draws"].eq(1)),
+        (NO_MAP, pd.Series(reconstructed, numbers.index)),
+        (UNDEFINED, numbers["metric"].isin(vague)),
+    ):
+        reasons = reasons.mask(whose, reason)
+    return reasons
 
 
 def counted_as(numbers: pd.DataFrame) -> pd.Series:

@@ -164,6 +164,8 @@ class TableOfRuns(Job):
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
     reconstructed: bool
+    votes: dict[str, dict] | None
+    """By metric, the numbers to which nothing was fitted; None if that are all."""
     paired: bool
     """Whether runs with equal repeat numbers start alike."""
     repeats: int
@@ -186,6 +188,7 @@ class TableOfRuns(Job):
             self.baselines,
             self.name,
             self.reconstructed,
+            self.votes,
         )
         table = tables.pivot(runs, self.spec, self.labels)
         table.to_csv(output_files.table, lineterminator="\n")

@@ -204,6 +204,13 @@ def under(chunk: Chunk, reading: Reading, assumptions: list[Assumption]) -> Chun
     return chunk._replace(settings=settings, problems=places)
 
 
+def _without_reference(chunk: Chunk) -> Chunk:
+    """A chunk on other maps, whose best path is not known."""
+    known = {name for name, place in chunk.problems.items() if "reference" in place}
+    places = {name: chunk.problems[name] | {"reference": math.nan} for name in known}
+    return chunk._replace(problems=chunk.problems | places)
+
+
 class Made(NamedTuple):
     """Runs of a method in an experiment under a reading. own: whether they are others than those of
     the default.
@@ -232,6 +239,8 @@ class Runner(NamedTuple):
             moved = bool(self._changed(name, reading))
             for default in each.chunks.values():
                 chunk = under(default, reading, self.assumptions)
+                if moved:
+                    chunk = _without_reference(chunk)
                 made.append(Made(name, chunk, moved or chunk != default))
         try:
             for chunk in (each.chunk for each in made):

@@ -40,7 +40,7 @@ COLUMNS = [
     *("outside", "together", "why"),
 ]
 
-REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW}
+REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW, comparison.FITTED}
 
 LEGEND = (
     "Each column of printed means as a whole, and in brackets where 95 % of experiments of the "

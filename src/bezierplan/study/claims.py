@@ -121,6 +121,6 @@ class AssumptionsFile(Model):
     votes: dict[Name, dict[Metric, Where]] = Field(
         {},
         description="table → metric → the printed numbers that score readings (`snakemake "
-        "readings`): column → value or list of values, {} for all; name none to which something "
-        "was fitted",
+        "readings`): column → value or list of values, {} for all; those of these tables to which "
+        "something was fitted have none, and neither agree nor disagree",
     )

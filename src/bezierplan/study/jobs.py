@@ -211,6 +211,7 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
         reconstructed=study.reconstructed(spec),
+        votes=study.votes.get(spec.extends or table),
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
         sources=[file] if file else [],
