@@ -6,6 +6,7 @@ The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny20
 touches no occupied cell.
 """
 
+import heapq
 from collections.abc import Callable
 from enum import IntEnum
 from functools import partial
@@ -14,6 +15,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.geometry.shortest_paths.graph import way_back
 from bezierplan.kernels import compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
@@ -114,7 +116,8 @@ def roadmap(
     one, other = _pairs(points, neighbours)
     seen = sees(points[one], points[other])
     one, other = one[seen], other[seen]
-    length, way = _shortest_way(points, one, other)
+    lengths = np.hypot(*(points[one] - points[other]).T)
+    length, way = _shortest_way(len(points), one, other, lengths)
     return length, points[way], len(one)
 
 
@@ -217,38 +220,29 @@ def _visible(
     return visible
 
 
-def _shortest_way(
-    points: np.ndarray, tails: np.ndarray, heads: np.ndarray
-) -> tuple[float, np.ndarray]:
-    """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and
-    empty if they are not connected.
-    """
-    lengths = np.hypot(*(points[tails] - points[heads]).T)
-    length, before = _from_start(len(points), tails, heads, lengths)
-    way = [1] if length < np.inf else []
-    while way and way[-1]:
-        way.append(before[way[-1]])
-    return length, np.array(way[::-1], dtype=int)
-
-
 @compiled
-def _from_start(count, tails, heads, lengths):
-    """Dijkstra's algorithm over `count` nodes, until node 1 is next: its distance from node 0, and
-    for each node (count,) the one before it.
+def _shortest_way(count, tails, heads, lengths):
+    """Dijkstra's algorithm along links (n,) of `count` nodes: the length of the shortest path from
+    node 0 to node 1, and its nodes; infinite and empty if they are not connected.
     """
-    steps = np.full((count, count), np.inf)
-    for k in range(len(tails)):
-        steps[tails[k], heads[k]] = steps[heads[k], tails[k]] = lengths[k]
-    far, before = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
-    waits = np.ones(count, dtype=np.bool_)
-    far[0], node = 0.0, 0
-    while node != 1:
-        waits[node] = False
-        for k in range(count):
-            if far[node] + steps[node, k] < far[k]:
-                far[k], before[k] = far[node] + steps[node, k], node
-        node = 1
-        for k in range(count):
-            if waits[k] and far[k] < far[node]:
-                node = k
-    return far[1], before
+    links = len(tails)
+    ends = np.concatenate((tails, heads))
+    # The links of a node: its newest one, by either end, and before each the next older one.
+    newest, older = np.full(count, -1), np.empty_like(ends)
+    for k in range(len(ends)):
+        older[k], newest[ends[k]] = newest[ends[k]], k
+    far, before = np.full(count, np.inf), np.full(count, -1)
+    far[0] = 0.0
+    heap = [(0.0, 0)]
+    while len(heap) > 0 and heap[0][1] != 1:
+        length, node = heapq.heappop(heap)
+        if length > far[node]:
+            continue
+        k = newest[node]
+        while k >= 0:
+            other, so_far = ends[k - links], length + lengths[k % links]
+            if so_far < far[other]:
+                far[other], before[other] = so_far, node
+                heapq.heappush(heap, (so_far, other))
+            k = older[k]
+    return far[1], way_back(before, far[1])
