@@ -87,7 +87,8 @@ def test_ways_are_those_of_the_runs(found):
     again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, CHUNK.settings))
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
-        length = penalised.length(position.T.ravel(), again, curve, scratch)
+        penalised.write_curve(position.T.ravel(), again, curve)
+        length = penalised.length(curve, scratch)
         violation, _ = penalised.violation(curve, again, scratch)
         assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])

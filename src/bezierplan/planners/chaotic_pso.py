@@ -59,7 +59,7 @@ _SPREAD = 0.05
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after
+    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after
     iteration 0, 1, ..., done. violation: that of the last of them. infeasible: number of evaluated
     paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
     obstacles. best_colliding_samples: those of the best path, summed over the iterations.
@@ -202,7 +202,7 @@ def plan(
         Among circles or polygons.
     rng : numpy.random.Generator
         The only source of random numbers.
-    start : ndarray, (n, d), optional
+    start : ndarray, (n, 2), optional
         Free control points, in units, at which the first particle starts and half of all particles
         around it; else all start anywhere.
 
@@ -247,7 +247,7 @@ def plan(
 
 
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
-    """Control points (iterations done + 1, control points, d) of the best path after every
+    """Control points (iterations done + 1, control points, 2) of the best path after every
     iteration of the run that `plan` makes with the same generator and settings, in units
     (tharwat2018, Figure 12).
     """
@@ -263,7 +263,7 @@ def search(
     particles, iterations, dimensions = (
         settings.particles,
         settings.iterations,
-        len(problem.start) * settings.control_points,
+        2 * settings.control_points,
     )
     if dimensions == 0:
         particles, iterations = 1, 0
@@ -305,12 +305,11 @@ def _objective(problem: Problem, settings: Settings) -> Objective:
 
 
 def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
-    """Control points (n + 2, d) of a particle (d n,)."""
-    d = len(problem.start)
-    n = len(position) // d
-    points = np.empty((n + 2, d))
+    """Control points (n + 2, 2) of a particle (2 n,)."""
+    n = len(position) // 2
+    points = np.empty((n + 2, 2))
     points[list(curves.ends(curve))] = problem.start, problem.target
-    points[penalised.free(curve, n)] = position.reshape(d, n).T
+    points[penalised.free(curve, n)] = position.reshape(2, n).T
     return points
 
 
@@ -345,7 +344,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     iterations = len(zeta)
     particles, dimensions = x.shape
     samples = objective.free.shape[1]
-    curve, scratch = np.empty((len(objective.ends), samples)), np.empty(samples)
+    curve, scratch = np.empty((2, samples)), np.empty(samples)
     v = np.zeros_like(x)
     p, p_fitness = np.empty_like(x), np.full(particles, np.inf)
     g, g_fitness = np.empty((iterations + 1, dimensions)), np.full(iterations + 1, np.inf)
@@ -378,13 +377,18 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                     rules,
                 )
                 _hold(x[i], v[i], low, high, rules.bound_rule)
-            length = penalised.length(x[i], objective, curve, scratch)
+            penalised.write_curve(x[i], objective, curve)
             if rules.tested == Tested.samples:
                 violation, colliding = penalised.violation(curve, objective, scratch)
             else:
                 violation, colliding = _violation_of_points(x[i], objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
+            # Most paths are too long to be a best one, which a few chords tell.
+            least = penalised.fitness(penalised.least_length(curve), violation, objective)
+            if least >= p_fitness[i]:
+                continue
+            length = penalised.length(curve, scratch)
             fitness = penalised.fitness(length, violation, objective)
             if fitness < p_fitness[i]:
                 copy(x[i], p[i])
@@ -414,8 +418,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
 @compiled
 def _violation_of_points(particle, objective, scratch):
     """`penalised.violation` of a particle's control points instead of samples of its curve."""
-    d = len(objective.ends)
-    return penalised.violation(particle.reshape((d, len(particle) // d)), objective, scratch)
+    return penalised.violation(particle.reshape((2, len(particle) // 2)), objective, scratch)
 
 
 @allocation_free

@@ -88,31 +88,52 @@ def fitness(length: float, violation: float, objective: Objective) -> float:
 
 
 @allocation_free
-def length(
-    particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray
-) -> float:
-    """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
-
-    particle: (d n,). curve: (d, samples), the samples; overwritten. chords: (samples,) scratch.
-    """
-    ends, free = objective.ends, objective.free
-    n, samples = free.shape
-    for axis in range(len(ends)):
-        x, end = curve[axis], ends[axis]
+def write_curve(particle: np.ndarray, objective: Objective, curve: np.ndarray) -> None:
+    """Write the samples (2, samples) of the curve of a particle (2 n,)."""
+    n, samples = objective.free.shape
+    x, y = curve[0], curve[1]
+    for s in range(samples):
+        x[s], y[s] = objective.ends[0, s], objective.ends[1, s]
+    # Three control points at a time, so that samples are read and written fewer times.
+    for k in range(n % 3):
+        a, ax, ay = objective.free[k], particle[k], particle[n + k]
         for s in range(samples):
-            x[s] = end[s]
-        for k in range(n):
-            z, weights = particle[axis * n + k], free[k]
-            for s in range(samples):
-                x[s] += z * weights[s]
+            x[s] += ax * a[s]
+            y[s] += ay * a[s]
+    for k in range(n % 3, n, 3):
+        a, b, c = objective.free[k], objective.free[k + 1], objective.free[k + 2]
+        ax, bx, cx = particle[k], particle[k + 1], particle[k + 2]
+        ay, by, cy = particle[n + k], particle[n + k + 1], particle[n + k + 2]
+        for s in range(samples):
+            x[s] = x[s] + ax * a[s] + bx * b[s] + cx * c[s]
+            y[s] = y[s] + ay * a[s] + by * b[s] + cy * c[s]
+
+
+@allocation_free
+def least_length(curve: np.ndarray) -> float:
+    """No more than the length of a curve (2, samples): that of four chords."""
+    last = curve.shape[1] - 1
+    total = 0.0
+    for k in range(4):
+        begin, end = k * last // 4, (k + 1) * last // 4
+        total += np.sqrt(
+            (curve[0, end] - curve[0, begin]) ** 2 + (curve[1, end] - curve[1, begin]) ** 2
+        )
+    return total * (1.0 - 1e-9)  # for rounding errors
+
+
+@allocation_free
+def length(curve: np.ndarray, chords: np.ndarray) -> float:
+    """Length of the polyline through the samples of a curve (2, samples) (tharwat2018, eq. 19).
+
+    chords: (samples,) scratch.
+    """
+    samples = curve.shape[1]
+    x, y = curve[0], curve[1]
     # The square roots are vectorised if their sum is separate; its four partial sums need not wait
     # for each other.
-    for axis in range(len(ends)):
-        x = curve[axis]
-        for s in range(samples - 1):
-            chords[s] = (x[s + 1] - x[s]) ** 2 + (chords[s] if axis else 0.0)
     for s in range(samples - 1):
-        chords[s] = np.sqrt(chords[s])
+        chords[s] = np.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     fours = (samples - 1) // 4 * 4
     for s in range(0, fours, 4):
@@ -169,7 +190,7 @@ def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> t
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a
     share of the largest depth (tharwat2018, eqs. 20 and 21).
 
-    curve: (d, samples). scratch: (samples,) or longer.
+    curve: (2, samples). scratch: (samples,) or longer.
     """
     of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
     of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
