@@ -143,7 +143,7 @@ LIES = {
 
 
 def row(plan):
-    return execution.row(CHUNK, CONDITION, 0, plan, PROBLEM, region(PROBLEM.workspace))
+    return execution.row(CHUNK, CONDITION, 0, plan, True, PROBLEM, region(PROBLEM.workspace))
 
 
 @pytest.mark.parametrize("lie", LIES)

@@ -34,7 +34,7 @@ def found(study, experiment, method, place=-1):
     condition = next(conditions([name], described.vary))
     for repeat in range(REPEATS):
         plan = execution.run(described, condition, repeat, problem)
-        row = execution.row(described, condition, repeat, plan, problem, blocked)
+        row = execution.row(described, condition, repeat, plan, True, problem, blocked)
         rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 

@@ -12,7 +12,7 @@ from bezierplan.analysis import results
 from bezierplan.running import columns, problems, rows
 from bezierplan.running.inputs import Files
 from bezierplan.study import definition, jobs
-from bezierplan.study.experiments import Experiment
+from bezierplan.study.experiments import Experiment, Method
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -34,8 +34,12 @@ def experiment(repeats, chunk, **others):
     [(10, 4, 3), (8, 4, 2), (1, 1, 1), (9, 3, 3), (100, 1, 100), (4, 4, 1)],
 )
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
-    own = definition.Study.model_construct(experiments={"first": experiment(repeats, chunk)})
+    own = definition.Study.model_construct(
+        experiments={"first": experiment(repeats, chunk)},
+        methods={"mine": Method(planner="prm"), "other": Method(planner="straight_line")},
+    )
     assert list(jobs.chunks(own, "first", "mine", "full")) == list(range(count))
+    assert list(jobs.chunks(own, "first", "other", "full")) == [0], "draws no random numbers"
 
 
 @pytest.mark.parametrize(
@@ -103,6 +107,7 @@ def chunks(tmp_path):
                 EMPTY
                 | of
                 | {"id": f"{method}{n}", "repeat": int(n), "length": 2.0, "feasible": True}
+                | {"drew": True}
                 for n in repeats
             ]
             times = [

@@ -58,7 +58,7 @@ def table(values: dict[str, np.ndarray], metric: str = "objective", **columns) -
         "experiment": "tried",
         "problem": "first",
         "workspace": "grid",
-        "planner": "chaotic_pso",
+        "drew": True,
         "feasible": True,
         "claimed_feasible": True,
     } | columns
@@ -290,7 +290,7 @@ def test_share_and_its_exact_interval():
     assert (row["effect"], row["n"]) == (35 / 40, 40)
     # Clopper and Pearson (1934).
     assert (row["low95"], row["high95"]) == pytest.approx((0.7320, 0.9581), abs=1e-4)
-    alike = judged(SHARE, MOSTLY.assign(planner="straight_line"))
+    alike = judged(SHARE, MOSTLY.assign(drew=False))
     assert (alike["n"], alike["verdict"]) == (1, "undecided"), "a deterministic method's one run"
 
 

@@ -234,7 +234,7 @@ def made(key, claim, truth) -> dict[str, Results]:
             itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]
         ).assign(experiment=name)
         rng = generator(f"{key}/{claim['id']}/{name}/{truth}")
-        rows["feasible"], rows["planner"] = True, "chaotic_pso"
+        rows["feasible"] = rows["drew"] = True
         for check in claim["checks"]:
             for column, wanted in check.get("where", {}).items():
                 if column in metrics.METRICS:
@@ -412,7 +412,7 @@ def results_of(rows: pd.DataFrame, *names: str, **columns) -> dict[str, Results]
         "condition": "only",
         "problem": "only",
         "workspace": "only",
-        "planner": "chaotic_pso",
+        "drew": True,
         "feasible": True,
         "length": 1.0,
     } | columns

@@ -78,7 +78,7 @@ FAULTS_OF_RUNS = {
         "start is target",
         "history = np.sort(lengths)[::1]",
         "history",
-        "rises; expected the best objective so far",
+        "history: rises; expected the best objective so far",
     ),
     "a budget": (
         "target beside start",
@@ -86,7 +86,7 @@ FAULTS_OF_RUNS = {
         "budget",
         "21 evaluations; expected at most 20",
     ),
-    "an end of the history": ("no obstacles", "history[-1] -= 1", "history", "ends with "),
+    "an end of the history": ("no obstacles", "history[-1] -= 1", "history", "objective: "),
     **{
         f"random numbers of {name}": (
             "open",
@@ -191,7 +191,7 @@ def test_what_ends_the_runs_is_one_fault(case, tmp_path):
             "    start, target",
             "    rng = np.random.default_rng(5)\n    start, target",
             "random numbers",
-            "the same plans from every generator; draw",
+            "draws no number from the rng that it is given",
         ),
     ],
 )

@@ -250,7 +250,7 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = rides.judged(ride, made["across"], found["across"])
+    row, _ = rides.judged(ride, True, made["across"], found["across"])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -269,7 +269,7 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     )
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.judged(ride, made["across"], found["across"])
+    row, _ = rides.judged(ride, True, made["across"], found["across"])
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
@@ -283,7 +283,7 @@ def a_row(tmp_path, points, times, arrived=True):
         0.0,
         [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)],
     )
-    return rides.judged(ride, made["across"], found["across"])[0]
+    return rides.judged(ride, True, made["across"], found["across"])[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.
@@ -329,7 +329,7 @@ def drives_of(*rows):
         f"mystudy/drives/across/{method}/{repeat}"
         for method, repeat in zip(table["method"], table["repeat"])
     ]
-    return table.assign(id=ids, feasible=feasible, **same)
+    return table.assign(id=ids, feasible=feasible, drew=True, **same)
 
 
 def bounds_table(**values):

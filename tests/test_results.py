@@ -33,7 +33,7 @@ def runs(lengths, feasible=True):
         "repeat": range(len(lengths)),
         "length": lengths,
     }
-    return pd.DataFrame(rows | {"feasible": feasible, "objective": lengths})
+    return pd.DataFrame(rows | {"feasible": feasible, "objective": lengths, "drew": True})
 
 
 def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
@@ -42,6 +42,24 @@ def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
         match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound",
     ):
         results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
+
+
+def test_a_run_that_drew_nothing_stands_for_each_repeat_and_counts_once():
+    """Of a method that says so, and of one that ran in each repeat."""
+    rows = [("a", 0, True), ("a", 1, True), ("b", 0, False), ("c", 0, False), ("c", 1, False)]
+    made = pd.DataFrame(rows, columns=["method", "repeat", "drew"]).assign(
+        id=[f"s/e/disc/{method}/{repeat}" for method, repeat, _ in rows],
+        condition="disc",
+        problem="disc",
+        length=5.0,
+        feasible=True,
+    )
+    joined = results.joined(made, {"disc": DISC}, BOUNDS).runs
+    assert joined[["method", "repeat"]].values.tolist() == [
+        [method, repeat] for method in "abc" for repeat in (0, 1)
+    ]
+    assert joined["id"].str[-3:].tolist() == ["a/0", "a/1", "b/0", "b/0", "c/0", "c/0"]
+    assert results.repeated(joined).tolist() == [False, False, False, True, False, True]
 
 
 def test_colliding_path_may_be_shorter_than_the_bound():

@@ -98,17 +98,39 @@ def test_conditions_take_turns():
     }
 
 
-def test_deterministic_planner_is_run_once_a_condition(planner):
+DRAWS = {
+    "one": ("bend = bend + rng.random()", True),
+    "of a generator that it has made": ("bend = bend + rng.spawn(1)[0].random()", True),
+    "none": ("rng = SimpleNamespace(random=lambda: 0.5)", False),
+    "of a seed of its own": ("rng = np.random.default_rng(42)", False),
+    "of a state of its own": ("rng.bit_generator.state = np.random.PCG64(1).state", False),
+}
+
+
+@pytest.mark.parametrize("case", DRAWS)
+def test_whether_random_numbers_were_drawn_is_a_fact(planner, capsys, case):
+    line, drew = DRAWS[case]
+    given = planner(f"    {line}\n    made.append", "from types import SimpleNamespace\n")
+    runs, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    assert set(runs["drew"].to_pylist()) == {drew}
+    told = f"run study/bends/*/bend: planner bend: {worker.UNDRAWN}\n"
+    assert capsys.readouterr().err == ("" if drew else told)
+
+
+def test_a_planner_that_draws_nothing_and_says_so_is_not_told_of_it(planner, capsys):
+    given = planner("    rng = np.random.default_rng(1)\n    made.append", "deterministic = True\n")
+    execution.run_chunk({"disc": PROBLEM}, given)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_planner_that_finds_nothing_in_any_repeat_has_runs(planner, capsys):
     given = planner(
-        "    rng = SimpleNamespace(random=lambda: 1.0)\n    made.append",
-        "from types import SimpleNamespace\ndeterministic = True\n",
+        "    rng.random()\n    return Plan(None, np.inf, False, 1, np.array([np.inf]), '', {})\n"
+        "    made.append"
     )
-    runs, times = execution.run_chunk({"disc": PROBLEM}, given)
-    assert runs["repeat"].to_pylist() == [*range(4, 10)] * 3
-    assert len(set(times["cpu_s"].to_pylist())) <= 3
-    assert runs["objective"].to_pylist() == [
-        objective for objective in (5.0, 6.0, 7.0) for _ in range(6)
-    ]
+    runs, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    assert runs["feasible"].to_pylist() == [False] * 18
+    assert capsys.readouterr().err == ""
 
 
 def warm_up(seconds):
@@ -119,7 +141,7 @@ def warm_up(seconds):
 
     def once():
         taken.append(seconds[min(len(taken), len(seconds) - 1)])
-        return worker.Reply(-1, None, taken[-1], taken[-1])
+        return worker.Reply(-1, None, taken[-1], taken[-1], True)
 
     worker.warm_up(once)
     return len(taken)

@@ -211,7 +211,7 @@ def test_landscape(world, minima, correlation):
     runs = pd.DataFrame(
         [
             {
-                "planner": "chaotic_pso",
+                "drew": True,
                 "problem": world,
                 "workspace": world,
                 "samples": SAMPLES,
@@ -245,7 +245,7 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     runs = pd.DataFrame(
         [
             {
-                "planner": "chaotic_pso",
+                "drew": True,
                 "problem": "p",
                 "workspace": "p",
                 "samples": SAMPLES,

@@ -50,7 +50,7 @@ def results(repeats: int = 20) -> Results:
             "condition": problem,
             "problem": problem,
             "method": method,
-            "planner": "prm",
+            "drew": True,
             "repeat": repeat,
             "length": 1.0 if repeat % 5 == 0 else rng.normal(10 if problem == "long" else 5, 0.1),
             "evaluations": 1000 if method == "fast" else 2000,
@@ -213,7 +213,7 @@ def test_a_printed_number_that_no_cell_takes_is_an_error():
 def test_a_deterministic_method_has_one_run_under_each_condition():
     ours = results()
     plain = ours.runs["method"] == "plain"
-    changed = {"planner": "straight_line", "length": 10.0, "feasible": True}
+    changed = {"drew": False, "length": 10.0, "feasible": True}
     runs = ours.runs.assign(
         **{name: ours.runs[name].mask(plain, changed[name]) for name in changed}
     )

@@ -19,6 +19,7 @@ from chunks import CHUNK, MADE
 
 from bezierplan.__main__ import main
 from bezierplan.analysis import proof
+from bezierplan.machine import digest
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rows
 from bezierplan.running.jobs.watchdog import PlannerFailure
@@ -32,12 +33,13 @@ BEND = """
 import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan
+from place import MIDDLE
 
 workspaces = ("circles",)
 
 def plan(problem, rng):
     {seed}
-    middle = [0.0, 5.0 + rng.normal(0, 0.1)]
+    middle = [0.0, MIDDLE + rng.normal(0, 0.1)]
     path = Path("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
     return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]),
@@ -79,7 +81,8 @@ def original(tmp_path_factory):
     folder = tmp_path_factory.mktemp("verified")
     study = folder / "bend"
     (study / "published").mkdir(parents=True)
-    for name, text in (STUDY | {"bend.py": BEND.format(seed="")}).items():
+    code = {"bend.py": BEND.format(seed=""), "place.py": "MIDDLE = 5.0\n"}
+    for name, text in (STUDY | code).items():
         (study / name).write_text(text)
     words = ("--snakefile", str(TREE / "Snakefile"), "--config", 'studies=["./bend"]')
     words += ("--cores", "2", "--workflow-profile", "none")
@@ -98,6 +101,8 @@ def results(original, tmp_path):
 
 def verified(capsys, *words):
     """The status of the command, and the lines that it printed, and those about faults."""
+    for known in (digest.function_digest, digest._reached, digest._syntax):
+        known.cache_clear()  # as in a process of its own
     try:
         main(["verify", *map(str, words), "--cores", "1"])
         status = 0
@@ -244,6 +249,45 @@ def test_only_a_run_that_is_made_again_shows_a_history_that_was_edited(results, 
     assert lines[0].startswith(f"{results / RUNS}: bend/bends/across/bend/0: history: stored [")
 
 
+@pytest.mark.parametrize("file", ["bend.py", "place.py"])
+def test_code_that_did_not_make_the_runs_is_named(results, capsys, file):
+    """Though it would make the same ones: of the planner, and of a module that it imports."""
+    code = Path("bend", file)
+    code.write_text(code.read_text().replace("0.1" if file == "bend.py" else "5.0", "1 / 10 * 1"))
+    status, lines, _ = verified(capsys, results)
+    assert status == 1
+    for chunk in (0, 1):
+        place = f"{results}/bend/runs/bends/bend/{chunk}.parquet"
+        assert lines[chunk].startswith(f"{place}: all rows: code and libraries: stored ")
+    assert lines[-1] == "2 values differ"
+
+
+def test_files_that_nothing_makes_are_named_and_the_proof_goes_on(results, capsys):
+    """Of a table, a figure, an experiment, a method and a chunk that are no more."""
+    shutil.copytree(results / "bend/runs/bends/line", results / "bend/runs/bends/old")
+    left = [
+        *("old.csv", "problems/old.parquet", "paper/old.csv", "paper/table1.svg"),
+        *("beyond/figure9.png", "runs/bends/line/2.parquet"),
+    ]
+    for name in left:
+        (results / "bend" / name).parent.mkdir(exist_ok=True)
+        shutil.copy(results / "bend/claims.csv", results / "bend" / name)
+    left += [f"runs/bends/old/{file.name}" for file in (results / "bend/runs/bends/old").iterdir()]
+    status, lines, _ = verified(capsys, results)
+    named = {f"{results}/bend/{name}: of no table, figure or runs; delete it" for name in left}
+    assert {line for line in lines if "delete it" in line} == named
+    assert any(line.endswith(" files made again") for line in lines)
+    assert (status, lines[-1]) == (1, f"sound but for {len(left)} files that nothing makes")
+
+
+def test_runs_that_are_missing_without_a_list_are_named(results, capsys):
+    unlisted(results)
+    shutil.rmtree(results / "bend/runs/bends/line")
+    status, _, told = verified(capsys, results)
+    assert status == 2
+    assert ": no results/smoke/bend/runs/bends/line/" in told[-1]
+
+
 def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, capsys):
     table = rows.read(str(results / RUNS)).replace_schema_metadata()
     names = table.column_names
@@ -258,14 +302,29 @@ def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, ca
     )
 
 
-ALIKE = "repeats have the same history and path; a planner draws its random numbers from the rng"
 SLIPS = {
-    "a seed of its own": ("rng = np.random.default_rng(42)", ALIKE),
-    "random numbers of another module": ("np.random.seed(1); rng = np.random", ALIKE),
     "the best of all runs": (
         "best = globals().setdefault('kept', []); best.append(rng.normal())\n"
         "    rng = type('', (), {'normal': lambda *_: min(best)})",
         "nothing kept from an earlier run",
+    ),
+    "what it reads beside it": (
+        "open(__file__.replace('bend.py', 'params.json'), 'a')",
+        "/params.json; runs would not be made again after a change of it",
+    ),
+    "a module that no import names": (
+        "exec(open(__file__.replace('bend.py', 'other.py'), 'a+').read())",
+        "/other.py; runs would not be made again after a change of it",
+    ),
+    "a rising history": (
+        "rising = np.array([1.0, 2.0])\n    Plan = lambda *given, history, **more: "
+        "__import__('bezierplan').planners.Plan(*given, history=rising, **more)",
+        "its answer: history: rises; expected the best objective so far",
+    ),
+    "another objective": (
+        "Plan = lambda path, length, **more: "
+        "__import__('bezierplan').planners.Plan(path, 99.0, **more)",
+        "its answer: objective: 99.0; expected the last of history, ",
     ),
     "an order of words": (
         "rng = np.random.default_rng(abs(hash('word')))",
@@ -278,16 +337,10 @@ SLIPS = {
 def test_a_slip_of_a_planner_is_told(case, tmp_path):
     line, told = SLIPS[case]
     (tmp_path / "bend.py").write_text(BEND.format(seed=line))
-    problems_file, file = str(tmp_path / "e.parquet"), str(tmp_path / "0.parquet")
-    problems.write(MADE, dict.fromkeys(MADE, "field"), problems_file)
+    (tmp_path / "place.py").write_text("MIDDLE = 5.0\n")
     chunk = CHUNK._replace(planner=str(tmp_path / "bend.py"), repeats=[0, 6])
-
-    def run_and_judge():
-        rows.write(execution.run_chunk(MADE, chunk)[0], file)
-        recheck.judged(recheck.Task(problems_file, {file: chunk}))
-
     with pytest.raises(PlannerFailure, match=re.escape(told)):
-        run_and_judge()
+        execution.run_chunk(MADE, chunk)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -356,7 +409,7 @@ def tasks(tmp_path_factory):
     for name, (chunk, table) in runs.items():
         file = str(folder / f"{name}.runs.parquet")
         rows.write(table, file)
-        made[name] = recheck.Task(files[name], {file: chunk})
+        made[name] = recheck.Task(files[name], {file: chunk}, {})
     return made
 
 

@@ -44,7 +44,7 @@ def results(values):
             "condition": "long",
             "problem": "long",
             "method": method,
-            "planner": "prm",
+            "drew": True,
             "repeat": repeat,
             "objective": values[repeat, number],
             "length": 1.0,

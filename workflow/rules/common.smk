@@ -111,11 +111,7 @@ def in_trees(names):
 
 def files_of(scale, study, name):
     """The files of a table or figure."""
-    endings = ["svg", "png", "pdf", "csv", "txt"] if name in study.figures else ["csv", "tex"]
-    endings += ["comparison.csv"] if name in study.compared() else []
-    if name in study.with_published():
-        endings += ["published.csv", "wholes.csv"]
-    return [f"results/{scale}/{study.key}/{tree(name)}/{name}.{ending}" for ending in endings]
+    return [f"results/{scale}/{study.key}/{file}" for file in study.files_of(name)]
 
 
 PRINTED = {key: in_trees(study.with_published()) for key, study in STUDIES.items()}

@@ -12,8 +12,7 @@ number. Columns:
 - n_published: runs behind the published number, if the paper states it
 - value_published: the published number; a variant of a published method is compared with that
   method's number
-- n_ours: our runs that count: feasible ones for metrics of feasible paths, all for the others; of
-  a deterministic method one under each condition
+- n_ours: our runs that count: feasible ones for metrics of feasible paths, all for the others
 - n_asked: runs among which these are: the others failed, or have no such value
 - value_ours: the statistic of these runs
 - value_ours_scaled: the same for n_published runs (`statistics.scaled`): counts and extremes depend

@@ -11,6 +11,7 @@ import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,7 @@ class Job(ABC):
         """Modules that `run` imports by name, because of the values."""
         return self.code
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """Of the values, the content of sources, and the code that works, with the versions of
         libraries that compute. Objects that have the same text are the same.
@@ -127,7 +128,7 @@ class Runs(Job):
 
         file = input_files.problems
         tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
-        rows.write(tables[0], output_files.runs)
+        rows.write(tables[0], output_files.runs, self.digest)
         parquet.write_table(tables[1], output_files.times)
         for traces in tables[2:]:
             parquet.write_table(traces, output_files.traces, compression="zstd")
@@ -146,7 +147,7 @@ class Judgement(Job):
         from bezierplan.running.judge import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
-        verdict = recheck.judged(recheck.Task(input_files.problems[0], files))
+        verdict = recheck.judged(recheck.Task(input_files.problems[0], files, {}))
         recheck.write(recheck.sound(verdict), output_files[0])
 
 

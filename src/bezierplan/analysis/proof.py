@@ -53,14 +53,21 @@ def unlisted(folder: Path) -> list[Difference]:
 
 
 def differing(
-    folder: Path, config: dict[str, Any], places: dict[str, str], processes: int
+    folder: Path,
+    left: list[Path],
+    config: dict[str, Any],
+    places: dict[str, str],
+    processes: int,
 ) -> tuple[int, list[Difference]]:
     """How many files follow from studies and runs, and which of them are others if they are
-    made again. places: of the studies. Raises ValueError if that fails.
+    made again. left: files that nothing makes. places: of the studies. Raises ValueError if that
+    fails.
     """
     with tempfile.TemporaryDirectory() as away:
         again = Path(away, "results", folder.resolve().name)
         shutil.copytree(folder, again, ignore=shutil.ignore_patterns("logs"))
+        for file in left:
+            (again / file.relative_to(folder)).unlink()
         files = [file for pattern in _FOLLOW for file in sorted(again.glob(pattern))]
         before = {file: sha256(file) for file in files}
         # What lies above all studies is of those that the list names.
@@ -107,5 +114,7 @@ def _make(
     )
     if done.returncode:
         told = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        line = next((each for each in told if "full account:" in each), told[-1])
+        line = next((each for each in told if "full account:" in each), told[-1].strip())
+        if line.startswith(away):  # Snakemake ends with the files that a rule lacks
+            line = f"no {Path(line).relative_to(away)}"
         raise ValueError(f"what follows from runs cannot be made again: {line}")

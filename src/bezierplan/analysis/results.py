@@ -13,7 +13,6 @@ from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
 from bezierplan.running.chunk import Chunk, chunk_files
 from bezierplan.running.columns import TABLES
-from bezierplan.running.guard import interface
 from bezierplan.running.inputs import Files, by_table
 from bezierplan.running.judge import answer
 from bezierplan.schema.model import one_or_list
@@ -24,7 +23,8 @@ from bezierplan.workspaces.worlds import World
 class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
-    runs: one row per run, columns as in `running.columns`, with the bounds of its problem.
+    runs: one row per run, columns as in `running.columns`, with the bounds of its problem; one that
+    drew no random numbers stands for every repeat.
     problems: by name. bounds: one row per problem, indexed by name, columns as in
     `problems.bounds_of`. published: the study's published numbers, if requested. jobs: method ->
     the first chunk of its runs, if runs are reproduced. worlds: by problem, where a world
@@ -104,7 +104,7 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
     if fault := row_files.fault(table.schema, *declared.every, *drives):
         raise row_files.misplaced(file, fault)
-    if kind != "times" and row_files.kept_digest(table) != row_files.rows_digest(table):
+    if kind != "times" and row_files.kept_digests(table)[0] != row_files.rows_digest(table):
         raise row_files.misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 
@@ -114,6 +114,7 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
     `read` does.
     """
     bounds = bounds.set_index("problem")
+    runs = _in_every_repeat(runs)
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     _refuse(runs, runs["length"] < least, "length", "bound")
@@ -126,6 +127,19 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
             "least_arrival",
         )
     return Results(runs, problems, bounds)
+
+
+def _in_every_repeat(runs: pd.DataFrame) -> pd.DataFrame:
+    """Runs, of which those that drew no random numbers stand once for each repeat that there is
+    under their condition, with their own id.
+    """
+    if runs["drew"].all():
+        return runs
+    repeats = runs[["condition", "repeat"]].drop_duplicates()
+    runs = runs.assign(place=np.arange(len(runs)))
+    once = runs[~runs["drew"]].drop_duplicates(["condition", "method"]).drop(columns="repeat")
+    every = pd.concat([runs[runs["drew"]], once.merge(repeats, on="condition")])
+    return every.sort_values(["place", "repeat"], ignore_index=True).drop(columns="place")
 
 
 def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> None:
@@ -183,11 +197,8 @@ def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
 
 
 def repeated(runs: pd.DataFrame) -> np.ndarray:
-    """Which runs (n,) only repeat another, under the same condition: of planners that use no random
-    numbers.
-    """
-    sure = [name for name in runs["planner"].unique() if interface.traits(name).deterministic]
-    return (runs["planner"].isin(sure) & runs.duplicated(["condition", "method"])).to_numpy()
+    """Which rows (n,) only show a run once more, in another repeat."""
+    return (~runs["drew"] & runs.duplicated(["condition", "method"])).to_numpy()
 
 
 def groups(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:

@@ -51,16 +51,15 @@ def cells(
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
     (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
-    how many satisfy `where`, with or without one; of a deterministic method one under each
-    condition, in both; by_run: those of all, NaN without one, by problem and repeat; groups: the
-    numbers as one array for each value of the column `within`, None without that key; least, most:
-    the range of the metric for one run (`least` of an entry is stronger than that of its metric);
-    and over all runs of the group: runs (how many), share_feasible, bound (median)
-    and gap (median of the feasible ones) of the metric's kind of length; draws (of random maps; 0
-    on others).
+    how many satisfy `where`, with or without one; each once, in both; by_run: those of all, NaN
+    without one, by problem and repeat; groups: the numbers as one array for each value of the
+    column `within`, None without that key; least, most: the range of the metric for one run
+    (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
+    (how many), share_feasible, bound (median) and gap (median of the feasible ones) of the metric's
+    kind of length; draws (of random maps; 0 on others).
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
-    runs = select(results.runs, spec.where).sort_values("id", ignore_index=True)
+    runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
     entries = spec.values
     specs = [metrics.METRICS[entry.metric] for entry in entries]
     wanted = {metric.gap for metric in specs} | {

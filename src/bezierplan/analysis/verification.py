@@ -37,15 +37,15 @@ def compared(outcome: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     """The numbers of an installation's comparison beside those kept of the same table: the columns
     that name one, value_kept, value_own, p.
 
-    p: probability of a difference as large by chance; nan where nothing can be said: times, numbers
-    of fewer than two runs, extremes.
+    p: probability of a difference as large by chance, 0 of a number that only one side has; nan
+    where nothing can be said: times, numbers of fewer than two runs, extremes.
     """
     names = [*again.columns[: again.columns.get_loc("unit") + 1], "n_published", "value_published"]
     outcome, again = (
         frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names)
         for frame in (outcome, again)
     )
-    both = outcome.merge(again, on=names, suffixes=("_kept", "_own"))
+    both = outcome.merge(again, "outer", names, suffixes=("_kept", "_own"), indicator="sides")
     values, sizes, low, high = (
         [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")]
         for name in ("value_ours", "n_ours", "low95_ours", "high95_ours")
@@ -54,7 +54,8 @@ def compared(outcome: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     found = both[names].assign(
         value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes)
     )
-    return found.assign(p=found["p"].where(~both["unit"].isin(TIMES)))
+    found["p"] = found["p"].where(~both["unit"].isin(TIMES))
+    return found.assign(p=found["p"].where(both["sides"] == "both", 0.0))
 
 
 def _plain(values: pd.Series) -> pd.Series:
@@ -90,26 +91,31 @@ def failed(numbers: pd.DataFrame) -> pd.DataFrame:
     return numbers[numbers["p"] * numbers["p"].notna().sum() < ERROR_RATE].sort_values("p")
 
 
-def against_outcome(folder: Path) -> tuple[list[str], bool]:
+def against_outcome(folder: Path, tables: list[tuple[str, str]]) -> tuple[list[str], bool]:
     """What is to be said of numbers beside those of docs/outcome, and whether they are sound.
-    Raises FileNotFoundError for a table that is not there.
+    tables: study and name of each. Raises FileNotFoundError for a table that is not there.
     """
     outcome = pd.read_csv(OUTCOME)
     pairs = []
-    for (study, table), rows in outcome.groupby(["study", "table"], sort=False):
+    for study, table in tables:
+        rows = outcome[(outcome["study"] == study) & (outcome["table"] == table)]
         file = folder / study / tree(table) / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
         pair = compared(rows, pd.read_csv(file))
         pairs.append(pair.assign(table=f"{study}/{table}"))
     numbers = pd.concat(pairs, ignore_index=True)
-    tested, worst = numbers[numbers["p"].notna()], failed(numbers)
-    equal = int((tested["value_kept"] == tested["value_own"]).sum())
+    numbers["equal"] = numbers["value_kept"] == numbers["value_own"]
+    tested, others = numbers[numbers["p"].notna()], numbers[numbers["p"].isna()]
+    of_times, worst = others["unit"].isin(TIMES), failed(numbers)
     lines = [
-        f"{len(tested)} numbers compared, {equal} equal, {len(worst)} different by more than chance"
+        f"{len(tested)} numbers compared, {tested['equal'].sum()} equal, {len(worst)} different by "
+        f"more than chance; not compared: {of_times.sum()} times and {(~of_times).sum()} without "
+        f"an interval ({others.loc[~of_times, 'equal'].sum()} equal)"
     ]
     if len(worst):
-        lines.append(worst.head(SHOWN).dropna(axis=1).to_string(index=False))
+        shown = worst.head(SHOWN).drop(columns="equal").dropna(axis=1, how="all")
+        lines.append(shown.to_string(index=False))
     rate = f"with a probability of at most {ERROR_RATE:.0%}"
     if len(tested) and worst.empty:
         return [*lines, f"sound: a sound installation fails {rate}"], True

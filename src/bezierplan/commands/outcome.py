@@ -23,7 +23,7 @@ def main() -> None:
     studies = studies_of()
     settings = pd.DataFrame(
         [(key, *row) for key, each in studies.items() for row in settings_of(each)],
-        columns=["study", "method", "setting", "value"],
+        columns=["study", "of", "setting", "value"],
     )
     tables = {
         key: {

@@ -163,14 +163,27 @@ def source_digest(*modules: str) -> str:
     Comments, docstrings and layout do not count: the digest is taken over syntax trees. Raises
     ValueError for a missing module.
     """
-    return _reached(*modules)[0]
+    return _reached(*modules).digest
+
+
+def covers(module: str, file: Path) -> bool:
+    """Whether `source_digest` of a module depends on a file, or on the source of which this is byte
+    code or a compiled kernel.
+    """
+    cached = file.parent.name == "__pycache__"
+    return any(
+        file.parent.parent == source.parent and file.name.startswith(f"{source.stem}.")
+        if cached
+        else file in (source, source.with_suffix(".csv"))
+        for source in _reached(module).files
+    )
 
 
 def versioned_digest(*modules: str) -> str:
     """`source_digest`, with the versions of the libraries among `COMPUTING` that these modules
     import: what a job's results depend on.
     """
-    digest, libraries = _reached(*modules)
+    digest, libraries, _ = _reached(*modules)
     return " ".join(
         [digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)]
     )
@@ -202,11 +215,18 @@ def library_version(name: str) -> str:
     return importlib.metadata.version(name)
 
 
-@cache
-def _reached(*modules: str) -> tuple[str, set[str]]:
-    """The digest of `source_digest`, and the libraries among `COMPUTING` that are imported
-    anywhere; llvmlite comes with numba.
+class _Reached(NamedTuple):
+    """What modules depend on: the digest of `source_digest`; the libraries among `COMPUTING` that
+    are imported anywhere (llvmlite comes with numba); and files of source.
     """
+
+    digest: str
+    libraries: set[str]
+    files: list[Path]
+
+
+@cache
+def _reached(*modules: str) -> _Reached:
     todo, texts, libraries = [], {}, set()
     for module in map(_module, modules):
         if module.file() is None:
@@ -227,7 +247,7 @@ def _reached(*modules: str) -> tuple[str, set[str]]:
             )
     libraries |= {"llvmlite"} if "numba" in libraries else set()
     digest = hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
-    return digest, libraries
+    return _Reached(digest, libraries, [module.file() for module in texts])
 
 
 @cache

@@ -3,6 +3,7 @@ world that moves, a run is a drive.
 """
 
 import itertools
+import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -163,10 +164,16 @@ def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
 
 
 def row(
-    chunk: Chunk, condition: Condition, repeat: int, plan: Any, problem: Problem, blocked: Region
+    chunk: Chunk,
+    condition: Condition,
+    repeat: int,
+    plan: Any,
+    drew: bool,
+    problem: Problem,
+    blocked: Region,
 ) -> dict[str, Any]:
-    """One row of the runs table, from a planner's answer. `blocked` is the region of the problem's
-    workspace.
+    """One row of the runs table, from a planner's answer. drew: whether it drew random numbers.
+    blocked: the region of the problem's workspace.
 
     Length and verdict are those of the points that the row holds. Raises PlannerFailure if the
     answer is not valid for this problem: for example, if its path begins or ends elsewhere, or a
@@ -175,9 +182,11 @@ def row(
     run = task(chunk, condition, repeat)
     with answer.of(run.name):
         plan = answer.accepted(plan, problem, [*TAKEN, *run.settings, *condition.values])
+        answer.check_history(plan, interface.traits(chunk.planner).keeps_best)
     curve, points = answer.stored(plan.path)
     length, check = answer.verdict(answer.restored(curve, points), blocked)
     outcome = Outcome(
+        drew=drew,
         objective=plan.objective,
         length=length,
         claimed_feasible=plan.claimed_feasible,
@@ -207,23 +216,22 @@ def rows_again(
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
     judged = _judge(chunk, met, worlds)
     return [
-        judged(*run, each.result)[0]
-        for run, each in zip(runs, made(chunk, met, tasks, worlds=worlds))
+        judged(*run, each)[0] for run, each in zip(runs, made(chunk, met, tasks, worlds=worlds))
     ]
 
 
 def _judge(
     chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
-) -> Callable[[Condition, int, Any], tuple[dict[str, Any], dict[str, Any]]]:
+) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
     """A function that makes, of what a run has found, a row, and of a drive its trace."""
     regions = {} if worlds else {name: region(each.workspace) for name, each in problems.items()}
 
-    def judged(condition: Condition, repeat: int, result: Any) -> tuple[dict, dict]:
-        name = condition.problem
+    def judged(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
+        name, result, drew = condition.problem, reply.result, reply.drew
         if not worlds:
-            return row(chunk, condition, repeat, result, problems[name], regions[name]), {}
+            return row(chunk, condition, repeat, result, drew, problems[name], regions[name]), {}
         known = identity(chunk, condition, repeat)
-        outcome, trace = rides.judged(result, problems[name], worlds[name])
+        outcome, trace = rides.judged(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
     return judged
@@ -235,38 +243,35 @@ def run_chunk(
     """The runs of a chunk (columns as in `columns`); in a separate table because they are never
     reproducible, their times; and, of drives in worlds, their traces (`rides.judged`).
 
-    A warm-up makes times comparable, and its runs must repeat themselves. Raises PlannerFailure,
-    naming the run, if a planner fails, does not return a valid plan for the problem (`row`),
-    changes a problem or a world, or gives another plan when its first or last run is repeated.
+    A warm-up makes times comparable, and its runs must repeat themselves. A planner that never
+    drew, and does not say so, is told on stderr. Raises PlannerFailure, naming the run, if a
+    planner fails, does not return a valid plan for the problem (`row`), changes a problem or a
+    world, or gives another plan when its first or last run is repeated.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
     every, judged = chunk.conditions(), _judge(chunk, met, moving)
     deterministic = interface.traits(chunk.planner).deterministic
-    first, last = chunk.repeats
-    order = _order(chunk, len(every), range(first, first + 1 if deterministic else last))
+    order = _order(chunk, len(every), range(*chunk.repeats))
     tasks = [task(chunk, every[k], repeat) for k, repeat in order]
     # The first run, and in a process of its own the last one. What needs no random numbers must not
     # be changed by others.
     again = [task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])]
     warm, done = defaultdict(list), {}
-    for number, result, cpu, wall in made(chunk, met, tasks, again, moving):
-        k, repeat = order[number]
-        outcome, trace = judged(every[k], repeat, result)
-        if number < 0:
-            warm[number + len(order)].append(outcome)
+    for reply in made(chunk, met, tasks, again, moving):
+        k, repeat = order[reply.number]
+        outcome, trace = judged(every[k], repeat, reply)
+        if reply.number < 0:
+            warm[reply.number + len(order)].append(outcome)
             continue
-        refuse_unrepeatable(warm[number], outcome, chunk, deterministic)
-        times = Times(outcome["id"], cpu, wall)._asdict()
+        refuse_unrepeatable(warm[reply.number], outcome, chunk, deterministic)
+        times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
         if moving:
-            times |= rides.replan_times(result, chunk.policy["step_seconds"])._asdict()
+            times |= rides.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
-    if deterministic:
-        for k, repeat in itertools.product(range(len(every)), range(first + 1, last)):
-            outcome, *others = done[k, first]
-            own = {"id": run_id(chunk, every[k], repeat)}
-            done[k, repeat] = outcome | own | {"repeat": repeat}, *(each | own for each in others)
     runs, times, traces = zip(*(done[key] for key in sorted(done)))
+    if not deterministic and not any(each["drew"] for each in runs):
+        print(f"{told_chunk(chunk)}: {worker.UNDRAWN}\n", end="", file=sys.stderr, flush=True)
     if not moving:
         return rows.table(runs, Planned, Outcome), rows.table(times, Times)
     return (

@@ -14,7 +14,9 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World
 
 
-def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
+def judged(
+    ride: Ride, drew: bool, problem: Problem, world: World
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """What a drive has found, columns of `Outcome` and `DriveOutcome`; and its trace: x and y at
     step 0, 1, ... and at the end of the drive, and clearance in each step, all in single precision;
     and the plans, by the time, curve and control points of each.
@@ -41,6 +43,7 @@ def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], 
         problem.target,
     )
     outcome = Outcome(
+        drew=drew,
         objective=float(times[-1]) * world.pace if ride.arrived else math.inf,
         length=travelled,
         claimed_feasible=ride.arrived,

@@ -41,6 +41,15 @@ class Study(Experiments, ArtefactsFile):
         numbered = [name for name in names if tree(name) == PAPER] or names
         return numbered if folder == PAPER else [name for name in names if name not in numbered]
 
+    def files_of(self, name: str) -> list[str]:
+        """The files of a table or figure, in the folder of the study's results."""
+        endings = ["svg", "png", "pdf", "csv", "txt"] if name in self.figures else ["csv", "tex"]
+        if name in self.compared():
+            endings.append("comparison.csv")
+        if name in self.with_published():
+            endings += ["published.csv", "wholes.csv"]
+        return [f"{tree(name)}/{name}.{ending}" for ending in endings]
+
     def compared(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}

@@ -326,6 +326,10 @@ class Experiments(ExperimentsFile):
         planner = self.methods[method].planner
         return relative(self.folder / planner) if is_file(planner) else planner
 
+    def draws(self, method: str) -> bool:
+        """Whether a method uses random numbers: if not, one run stands for all repeats."""
+        return not getattr(planner_module(self.planner(method)), "deterministic", False)
+
     def methods_of(self, experiment: str) -> list[str]:
         """Methods of an experiment, followed by the baselines that join: whose planner supports all
         its workspaces and has no setting that it varies.

@@ -56,7 +56,7 @@ def bounds(study: Study, scale: str, experiment: str) -> Bounds:
 def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
     """A chunk of runs, which always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
-    size = content.chunk[scale]
+    size = content.chunk[scale] if study.draws(method) else 1
     settings = study.resolved(method).items()
     first = number * size
     vary = {
@@ -100,9 +100,11 @@ def _problems_met(
 
 def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
     """Numbers of the chunks that contain a method's repeats in an experiment at a scale, under the
-    condition with the most.
+    condition with the most: one of a method that draws no random numbers.
     """
     content = study.experiments[experiment]
+    if not study.draws(method):
+        return range(1)
     factors = {"method": [method], "problem": content.problems} | content.vary
     repeats = min(
         max(content.runs_of(scale, factor, value) for value in values)

@@ -1,5 +1,6 @@
 """The jobs that show all results of a scale: the page, and the check of what it shows."""
 
+import hashlib
 from pathlib import Path
 
 from bezierplan.analysis.jobs import Verification
@@ -13,12 +14,16 @@ from bezierplan.figures.page.page_job import (
     StudyView,
     TableView,
 )
+from bezierplan.machine.digest import content_digest
 from bezierplan.places import STUDIES
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
+
+_LONG = 80
+"""Characters of a value that stand where settings are compared."""
 
 
 def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
@@ -130,12 +135,29 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
 
 
 def settings_of(study: Study) -> list[tuple[str, str, str]]:
-    """Method, setting and value of all that a study sets."""
+    """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
+    settings = {method: study.resolved(method) for method in study.methods}
+    for name, workspace in study.workspaces.items():
+        maps = study.maps([name])
+        content = {"content of the map": content_digest(*maps)} if maps else {}
+        settings[f"workspace {name}"] = workspace.plain() | content
+    for name, problem in study.problems.items():
+        settings[f"problem {name}"] = problem.plain()
+    for name, experiment in study.experiments.items():
+        settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
+    settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
+    settings["presets"] = study.presets
     return [
-        (method, setting, str(value))
-        for method in study.methods
-        for setting, value in study.resolved(method).items()
+        (owner, setting, _short(str(value)))
+        for owner, own in settings.items()
+        for setting, value in own.items()
     ]
+
+
+def _short(text: str) -> str:
+    """A text, of a long one a digest."""
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
 
 
 def has_audit(study: Study) -> bool:

@@ -29,20 +29,48 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
 
 
 def tasks(studies: Studies, folder: Path) -> list[Task]:
-    """What is to be judged below a scale's folder. Raises Fault for what no study makes, and
+    """What is to be judged below a scale's folder. Raises Fault for a folder of no scale, and
     FileNotFoundError without runs.
     """
     scale, listed = folder.resolve().name, []
     for place in sorted(folder.glob("*/runs/*/*")):
         key, _, experiment, method = place.relative_to(folder).parts
         check_known(scale, SCALES, f"{folder}: scale")
-        check_known(experiment, studies[key].experiments, f"{place}: experiment")
-        check_known(method, studies[key].methods_of(experiment), f"{place}: method")
-        chunks = jobs.judgement(studies[key], scale, experiment, method).chunks
-        files = {str(place / f"{number}.parquet"): chunk for number, chunk in enumerate(chunks)}
-        listed.append(Task(str(folder / key / "problems" / f"{experiment}.parquet"), files))
+        study = studies[key]
+        if experiment in study.experiments and method in study.methods_of(experiment):
+            made = {
+                str(place / f"{number}.parquet"): jobs.runs(
+                    study, scale, experiment, method, str(number)
+                )
+                for number in jobs.chunks(study, experiment, method, scale)
+            }
+            listed.append(
+                Task(
+                    str(folder / key / "problems" / f"{experiment}.parquet"),
+                    {file: each.chunk for file, each in made.items()},
+                    {file: each.digest for file, each in made.items()},
+                )
+            )
     if not listed:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
         )
     return listed
+
+
+def of_nothing(studies: Studies, folder: Path) -> list[Path]:
+    """Files in the folders of a scale that no study makes."""
+    scale, found = folder.resolve().name, []
+    for key, study in studies.items():
+        made = {"claims.csv", "claim_checks.csv", "audit.csv"}
+        made.update(*map(study.files_of, (*study.tables, *study.figures)))
+        for experiment in study.experiments:
+            made |= {f"problems/{experiment}.{end}parquet" for end in ("", "bounds.")}
+            for method in study.methods_of(experiment):
+                numbers = jobs.chunks(study, experiment, method, scale)
+                chunks = [f"{n}.{end}parquet" for n in numbers for end in ("", "times.", "traces.")]
+                made |= {f"runs/{experiment}/{method}/{n}" for n in (*chunks, "judgement.json")}
+        patterns = ("*.csv", "problems/[!.]*", "paper/[!.]*", "beyond/[!.]*", "runs/*/*/[!.]*")
+        files = (file for pattern in patterns for file in sorted((folder / key).glob(pattern)))
+        found += [file for file in files if str(file.relative_to(folder / key)) not in made]
+    return found

@@ -187,7 +187,7 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         if check.failures == "last":
             values = values.fillna(np.inf)
         runs = select(runs.assign(value=values), conditions)
-        # Shares of the runs of a deterministic method count one under each condition.
+        # A share counts each run once.
         frames.append(runs if check.cells else runs[~repeated(runs)])
     return pd.concat(frames, ignore_index=True)
 

@@ -27,15 +27,19 @@ def files() -> list[str]:
 
 
 def changes(study: str, settings: Iterable[tuple[str, str, str]]) -> list[str]:
-    """Which settings of a study, by method and setting, are not those of the README's outcome."""
+    """Which settings of a study, by what has them and setting, are not those of the README's
+    outcome.
+    """
     if not SETTINGS.is_file():
         return []
     with SETTINGS.open(encoding="utf-8", newline="") as rows:
-        before = {(m, s): value for key, m, s, value in csv.reader(rows) if key == study}
+        before = {(of, name): value for key, of, name, value in csv.reader(rows) if key == study}
+    now = {(of, name): value for of, name, value in settings}
     return [
-        f"{setting} of {method} is {value}, in the README's outcome {before.get(place, 'absent')}"
-        for method, setting, value in settings
-        if before.get(place := (method, setting)) != value
+        f"{name} of {of} is {now.get((of, name), 'absent')}, in the README's outcome "
+        f"{before.get((of, name), 'absent')}"
+        for of, name in now | before
+        if now.get((of, name)) != before.get((of, name))
     ]
 
 

@@ -126,32 +126,25 @@ def _findings(planner: str, module: ModuleType, settings: dict[str, Any]) -> Ite
     try:
         made = _made(planner, settings, by_name, SEEDS, hashing)
         again = _made(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
-        differ = any(len({*map(repr, plans[1:])}) > 1 for plans in made.values())
-        # Plans may all be the same because the problems are easy.
-        left = _made(planner, settings, by_name, SEEDS[1:], hashing, "left")
     except PlannerFailure as failure:
         yield Finding("all problems", "plan", False, str(failure))
         return
-    columns = next(iter(made.values()))[0].extra.keys()
-    fresh = {str([np.random.default_rng(seed).random(), 0]) for seed in SEEDS}
-    states = [{*map(str, each)} for each in left.values()]
-    draws = differ or any(len(each) > 1 and each.isdisjoint(fresh) for each in states)
-    for name, plans in made.items():
+    plans_of = {name: [each.result for each in replies] for name, replies in made.items()}
+    columns = next(iter(plans_of.values()))[0].extra.keys()
+    keeps_best = getattr(module, "keeps_best", True)
+    for name, plans in plans_of.items():
         for fact, detail, fault in (
             ("plan", *_is_valid(plans, by_name[name], {*TAKEN, *settings}, columns)),
-            ("history", "", _history_fault(plans, getattr(module, "keeps_best", True))),
+            ("history", "", _history_fault(plans, keeps_best)),
             ("budget", *_budget(plans, settings.get("evaluations", math.inf))),
             ("claims", *_claims(plans, by_name[name], getattr(module, "exact", False))),
-            ("random numbers", "", _repeats(plans, again.get(name, ()))),
+            ("random numbers", "", _repeats(plans, [each.result for each in again.get(name, ())])),
         ):
             yield Finding(name, fact, not fault, fault or detail)
-    fault = (
-        ""
-        if draws
-        else "the same plans from every generator; draw from rng as it comes, or say "
-        "deterministic = True"
-    )
+    draws = any(each.drew for replies in made.values() for each in replies)
+    fault = "" if draws else worker.UNDRAWN
     if getattr(module, "deterministic", False):
+        differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
         fault = "other plans from other generators, but deterministic = True" if differ else ""
     yield Finding("all problems", "random numbers", not fault, fault)
 
@@ -162,14 +155,13 @@ def _made(
     by_name: dict[str, Problem],
     seeds: tuple[int, ...],
     hashing: int | None,
-    function: str = "plan",
-) -> dict[str, list[Any]]:
+) -> dict[str, list[worker.Reply]]:
     """Plans by problem, one from each generator; in a process of its own with a seed of `hash`, if
-    there is one. function: as in `worker.Work`. Raises PlannerFailure.
+    there is one. Raises PlannerFailure.
     """
-    name, work = f"planner {planner}", worker.Work(planner, by_name, function)
+    name, work = f"planner {planner}", worker.Work(planner, by_name)
     tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
-    by_problem: dict[str, list[Any]] = {}
+    by_problem: dict[str, list[worker.Reply]] = {}
     for reply in (
         worker.made(work, tasks)
         if hashing is None
@@ -177,8 +169,8 @@ def _made(
     ):
         task = tasks[reply.number]
         with answer.of(task.name):
-            found = answer.plain(reply.result) if function == "plan" else reply.result
-            by_problem.setdefault(task.problem, []).append(found)
+            plan = answer.plain(reply.result)
+            by_problem.setdefault(task.problem, []).append(reply._replace(result=plan))
     return by_problem
 
 
@@ -199,16 +191,11 @@ def _is_valid(
 
 
 def _history_fault(plans: list[Plan], keeps_best: bool) -> str:
-    for plan in plans:
-        if (plan.history[1:] > plan.history[:-1]).any():
-            return "rises; expected the best objective so far"
-        last = plan.history[-1]
-        if (
-            plan.path is not None
-            and last != plan.objective
-            and (keeps_best or last > plan.objective)
-        ):
-            return f"ends with {last}; expected the objective, {plan.objective}"
+    try:
+        for plan in plans:
+            answer.check_history(plan, keeps_best)
+    except answer.Unfit as fault:
+        return str(fault)
     return ""
 
 

@@ -59,12 +59,13 @@ def imported(planner: str) -> tuple[ModuleType | None, str]:
 
 
 class Traits(NamedTuple):
-    """What a judge has to know of a planner: the names of its settings, and whether it uses no
-    random numbers.
+    """What a judge has to know of a planner: the names of its settings, whether it uses no random
+    numbers, and whether its objective is the best of its history.
     """
 
     settings: list[str]
     deterministic: bool
+    keeps_best: bool
 
 
 def traits(planner: str) -> Traits:
@@ -96,7 +97,11 @@ def described(begin: Callable[[str], None], planner: str) -> Iterator[Traits | s
 
 
 def _traits(module: ModuleType) -> Traits:
-    return Traits([*planner_settings(module)], bool(getattr(module, "deterministic", False)))
+    return Traits(
+        [*planner_settings(module)],
+        bool(getattr(module, "deterministic", False)),
+        bool(getattr(module, "keeps_best", True)),
+    )
 
 
 def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:

@@ -58,11 +58,13 @@ def made(
         "tasks": tasks,
         "again": again,
     }
-    for number, found, cpu, wall in answers(
+    for number, found, cpu, wall, drew in answers(
         "guard.worker.plain_answers", parts, name, limit, hashing
     ):
         with plain_values(name):
-            yield worker.Reply(number, plain.unpacked(found), seconds(cpu), seconds(wall))
+            yield worker.Reply(
+                number, plain.unpacked(found), seconds(cpu), seconds(wall), bool(drew)
+            )
 
 
 def answers(

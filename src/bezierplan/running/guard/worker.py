@@ -18,6 +18,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bezierplan.machine.digest import covers
+from bezierplan.places import PACKAGE, cache_folder
 from bezierplan.planners import Plan, planner_module
 from bezierplan.running.guard import plain
 from bezierplan.running.jobs.log import account
@@ -37,6 +39,11 @@ from bezierplan.workspaces.worlds import World, from_json, to_json
 
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
 """Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
+
+UNDRAWN = (
+    "draws no number from the rng that it is given, so that all repeats count as one; a planner "
+    "that never draws says deterministic = True"
+)
 
 # Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until
 # those after the first have taken this many seconds, or until one takes so long that its loading
@@ -69,9 +76,8 @@ class Task(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What a planner is for: its function `plan` or `track` on problems, by name; or `left`, how
-    its plan leaves the generator; or, with worlds of the problems, drives of a robot by its plans,
-    as a policy says.
+    """What a planner is for: its function `plan` or `track` on problems, by name; or, with worlds
+    of the problems, drives of a robot by its plans, as a policy says.
     """
 
     planner: str
@@ -80,17 +86,13 @@ class Work(NamedTuple):
     worlds: dict[str, World] | None = None
     policy: dict[str, Any] | None = None
 
-    def once(self, task: Task) -> Any:
-        """A plan, a track, a ride, or how the plan leaves the generator."""
+    def once(self, task: Task, rng: np.random.Generator) -> Any:
+        """A plan, a track or a ride."""
         module, problem = planner_module(self.planner), self.problems[task.problem]
-        rng = task.generator()
         if self.worlds:
             rules = Policy.model_construct(**self.policy)
             asked = partial(_planned, module, rng, task.settings, rules.warm)
             return robot.drive(self.worlds[task.problem], problem, rules, asked)
-        if self.function == "left":
-            module.plan(problem, rng, **task.settings)
-            return [rng.random(), rng.bit_generator.seed_seq.n_children_spawned]
         return getattr(module, self.function)(problem, rng, **task.settings)
 
 
@@ -116,13 +118,14 @@ def _planned(
 
 class Reply(NamedTuple):
     """What a planner has made. number: of its task; of a repetition, from the end: -1 is the last
-    task. cpu, wall: seconds.
+    task. cpu, wall: seconds. drew: whether it drew random numbers from its generator.
     """
 
     number: int
     result: Any
     cpu: float
     wall: float
+    drew: bool
 
 
 def made(
@@ -138,13 +141,23 @@ def made(
 
     def one(number: int, task: Task) -> Reply:
         begin(task.name)
+        rng = task.generator()
         with answer.of(task.name):
-            return Reply(number, *timed(partial(work.once, task)))
+            return Reply(number, *timed(partial(work.once, task, rng)), drew(task.generator(), rng))
 
     if again:
         yield from warm_up(partial(one, -len(tasks), again[0]))
     for number, task in enumerate(tasks):
         yield one(number, task)
+
+
+def drew(before: np.random.Generator, after: np.random.Generator) -> bool:
+    """Whether random numbers were drawn from a generator: it has gone on in its own sequence, which
+    its increment names, or has made others.
+    """
+    old, new = before.bit_generator.state, after.bit_generator.state
+    goes_on = old["state"]["inc"] == new["state"]["inc"] and old != new
+    return goes_on or after.bit_generator.seed_seq.n_children_spawned > 0
 
 
 def timed(once: Callable[[], Any]) -> tuple[Any, float, float]:
@@ -203,11 +216,11 @@ def plain_answers(
     met, of_tasks = unpacked_problems(problems), [Task(*each) for each in tasks]
     moving = {name: from_json(text) for name, text in worlds.items()}
     work, name = Work(planner, met, function, moving, policy), ""
-    for number, found, cpu, wall in made(work, of_tasks, [Task(*each) for each in again], begin):
+    for number, found, *others in made(work, of_tasks, [Task(*each) for each in again], begin):
         name = of_tasks[number].name
         with answer.of(name):
             found = found if moving or function != "plan" else answer.plain(found)
-        yield [number, plain.packed(found), cpu, wall]
+        yield [number, plain.packed(found), *others]
     refuse_changed(problems, packed_problems(met), name)
     refuse_changed(worlds, {key: to_json(world) for key, world in moving.items()}, name)
 
@@ -236,6 +249,8 @@ def main(job_file: str, lines_file: str) -> None:
     for name, most in LIMITS.items():
         with suppress(ValueError, OSError, AttributeError):  # not every system has each
             resource.setrlimit(getattr(resource, name), (most, most))
+    planner = job["given"]["planner"]
+    opened = _opened(planner)
     with open(lines_file, "a", encoding="utf-8") as lines:
 
         def say(kind: str, value: Any) -> None:
@@ -254,6 +269,7 @@ def main(job_file: str, lines_file: str) -> None:
             work = getattr(importlib.import_module(f"bezierplan.running.{module}"), function)
             for each in work(begin, **job["given"]):
                 _refuse_left(name)
+                _refuse_opened(name, planner, opened)
                 say("answer", each)
             say("took", cpu_time())
         # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
@@ -264,6 +280,35 @@ def main(job_file: str, lines_file: str) -> None:
             with suppress(OSError, ValueError):
                 stream.flush()
         os._exit(0)
+
+
+def _opened(planner: str) -> set[Path]:
+    """The files that this process opens from now on in the folder of a planner's study."""
+    folders = Path(planner).parents
+    study = next((each for each in folders if (each / "experiments.yaml").is_file()), folders[0])
+    libraries = (sys.prefix, str(PACKAGE), str(cache_folder()))
+    opened = set()
+
+    def note(event: str, given: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(given[0], str | bytes):
+            file = os.path.realpath(os.fsdecode(given[0]))
+            if Path(file).is_relative_to(study) and not file.startswith(libraries):
+                opened.add(Path(file))
+
+    sys.addaudithook(note)
+    return opened
+
+
+def _refuse_opened(name: str, planner: str, opened: set[Path]) -> None:
+    """Raise PlannerFailure for an opened file of which no digest would show a change."""
+    for file in sorted(opened):
+        if not covers(planner, file):
+            raise PlannerFailure(
+                f"{name}: opens {file.parent.name}/{file.name}; runs would not be made again after "
+                "a change of it: its values are settings, or stand in a module that the planner "
+                "imports"
+            )
+    opened.clear()
 
 
 def _refuse_left(name: str) -> None:

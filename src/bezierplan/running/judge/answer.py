@@ -83,6 +83,19 @@ def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan
     return plan
 
 
+def check_history(plan: Plan, keeps_best: bool) -> None:
+    """Raise Unfit for a history that rises; or, of a planner that keeps the best path, does not end
+    with the objective of its path.
+    """
+    if (plan.history[1:] > plan.history[:-1]).any():
+        raise Unfit("history: rises; expected the best objective so far")
+    if keeps_best and plan.path and plan.history[-1] != plan.objective:
+        raise Unfit(
+            f"objective: {plan.objective}; expected the last of history, {plan.history[-1]}, or "
+            "keeps_best = False"
+        )
+
+
 def check_ends(path: Path | None, problem: Problem) -> None:
     """Raise Unfit if an end of a path differs from the problem's.
 

@@ -14,7 +14,6 @@ import multiprocessing
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from itertools import chain
 from pathlib import Path as File
 from typing import Any, NamedTuple
 
@@ -23,12 +22,10 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.planners import is_file
 from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
-from bezierplan.running.guard import interface
-from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
+from bezierplan.running.jobs.watchdog import end_with_parent
 from bezierplan.running.judge import answer
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.problem import Problem
@@ -41,11 +38,6 @@ _SAME_PLACE = 1e-6
 
 MADE_AGAIN = 100
 """Of so many runs one is made again."""
-
-# So many repeats of each condition, all alike, from a planner that draws random numbers, are no
-# chance.
-_ALIKE = 5
-_ANSWER = ("condition", "history", "path_points")
 
 
 class Difference(NamedTuple):
@@ -69,10 +61,13 @@ class Difference(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Files of runs of an experiment, each with the chunk that it is to hold."""
+    """Files of runs of an experiment, each with the chunk that it is to hold, and with today's
+    digest of the job that makes it, where that is to be judged.
+    """
 
     problems: str
     runs: dict[str, Chunk]
+    jobs: dict[str, str]
 
 
 class Verdict(NamedTuple):
@@ -153,9 +148,7 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on a task. Raises ValueError for a file that is not the table to be there, and
-    PlannerFailure for repeats that are alike by no chance.
-    """
+    """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
     by_name, moving = _problems(task.problems)
     faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
@@ -163,7 +156,7 @@ def judged(task: Task) -> Verdict:
             raise rows.misplaced(task.problems, "not of the problems that the runs are of")
         table = rows.read(file)
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-        kept, digest = rows.kept_digest(table), rows.rows_digest(table)
+        (kept, job), digest = rows.kept_digests(table), rows.rows_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         if kept != digest:
             stored = kept or "none: another program wrote it"
@@ -173,6 +166,8 @@ def judged(task: Task) -> Verdict:
         else:
             files[file] = table.to_pylist()
             of_file = [*_identity_faults(file, files[file], chunk)]
+            if not of_file and (today := task.jobs.get(file, job)) != job:
+                of_file = [Difference(file, "all rows", "code and libraries", job or "none", today)]
         if of_file:
             files.pop(file, None)
         faults += of_file
@@ -180,7 +175,6 @@ def judged(task: Task) -> Verdict:
     for file, stored in files.items():
         for row in stored:
             faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
-    _refuse_alike(files, chunk)  # the task's chunks differ in their repeats alone
     return Verdict(
         tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
     )
@@ -204,23 +198,6 @@ def _identity_faults(
             # What a run finds out takes the place of a setting of that name.
             if name not in Outcome._fields and row.get(name) != value:
                 yield Difference(file, known["id"], name, row.get(name), value)
-
-
-def _refuse_alike(files: dict[str, list[dict[str, Any]]], chunk: Chunk) -> None:
-    """Raise PlannerFailure for a planner of its author's own that is said to draw random numbers,
-    but whose repeats, of a file or of all, are alike on every condition.
-    """
-    if not is_file(chunk.planner) or interface.traits(chunk.planner).deterministic:
-        return
-    for entries in (*files.values(), [*chain(*files.values())]):
-        conditions = {row["condition"] for row in entries}
-        answers = {repr([row[name] for name in _ANSWER]) for row in entries}
-        if 0 < len(answers) == len(conditions) and len(entries) >= _ALIKE * len(conditions):
-            raise PlannerFailure(
-                f"{execution.told_chunk(chunk)}: {len(entries) // len(conditions)} repeats "
-                "have the same history and path; a planner draws its random numbers from the rng "
-                "that it is given, or says deterministic = True"
-            )
 
 
 def _row_faults(
@@ -302,8 +279,8 @@ def _drive_judged(
 def made_again(
     tasks: list[Task], processes: int, digest: str, every: bool
 ) -> tuple[int, list[Difference]]:
-    """How many runs were made again, and what of them differs from their rows in any bit: one in
-    `MADE_AGAIN`, which a digest chooses, or all.
+    """How many runs were made again, and what of them differs from their rows in any bit: the
+    first of each file and one in `MADE_AGAIN`, which a digest chooses, or all.
     """
     share = 1 if every else MADE_AGAIN
     chunks = [
@@ -322,12 +299,11 @@ def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Differenc
     numbers = [
         n
         for n, run in enumerate(runs)
-        if int(hashlib.sha256(f"{digest} {execution.run_id(chunk, *run)}".encode()).hexdigest(), 16)
+        if n == 0
+        or int(hashlib.sha256(f"{digest} {execution.run_id(chunk, *run)}".encode()).hexdigest(), 16)
         % share
         == 0
     ]
-    if not numbers:
-        return 0, []
     made, moving = _problems(problem_file)
     remade = execution.rows_again(chunk, [runs[n] for n in numbers], made, moving)
     faults = []
