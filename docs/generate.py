@@ -168,7 +168,7 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
         maps=getattr(module, "workspaces", None),
         users=users,
         algorithms=[key for key in users if algorithm_of(key) in users[key]],
-        runs=of_users(typical_runs),
+        runs=sorted(of_users(typical_runs), key=not_proposed),
         settings=[
             [
                 f"`{setting}`",
@@ -212,6 +212,12 @@ def typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
             problem = study.data["problems"][run["problem"]]
             if problem["world"] is None and run["path"]:
                 yield each, run, problem, study.data["workspaces"][problem["workspace"]]
+
+
+def not_proposed(found: tuple[SimpleNamespace, Any]) -> tuple[bool, bool]:
+    """Whether a run is not of the method that its paper proposes, or not in its default reading."""
+    study, (shown, *_) = found
+    return shown["method"] != algorithm_of(study.key), "profile=default" not in shown["median"]
 
 
 def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
