@@ -2,7 +2,6 @@
 degenerate cases, settings.
 """
 
-import math
 from functools import partial
 
 import numpy as np
@@ -80,42 +79,6 @@ def test_reach_is_a_share_of_the_smaller_side(monkeypatch):
     assert colonies == [(10.0, 2.5)] * 3
 
 
-def test_cut_short_goes_to_the_last_point_in_sight():
-    occupied = np.zeros((20, 20), dtype=bool)
-    occupied[5:, 10] = True
-    path = np.array(
-        [
-            [1.5, 15.5],
-            [3.5, 12.5],
-            [5.5, 9.5],
-            [9.5, 4.5],
-            [10.5, 3.5],
-            [12.5, 5.5],
-            [14.5, 10.5],
-            [17.5, 15.5],
-        ]
-    )
-    assert abc_ep._cut_short(occupied, path).tolist() == [[1.5, 15.5], [10.5, 3.5], [17.5, 15.5]]
-
-
-def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
-    occupied = np.zeros((50, 50), dtype=bool)
-    occupied[10, 20] = True
-    path = np.array([[0.5, 0.5], [8.5, 6.5], [10.5, 10.5], [0.0, 0.0]])
-    target = np.array([40.5, 40.5])
-    point = np.array([13.9, 14.1])
-    colony = settings(reach=10.0)
-    # The cones have their height in the middle of the point's cell.
-    cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(
-        0, 10 - math.dist((10.5, 10.5), (13.5, 14.5))
-    )
-    expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
-    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(
-        expected, rel=1e-12
-    )
-    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
-
-
 def colony_of(places, costs, monkeypatch, cycles):
     """The points that a colony in plain Python tries, and the weights that its onlookers choose by;
     no try is ever better.
@@ -168,41 +131,3 @@ def test_bees_move_one_coordinate_to_either_side(monkeypatch):
     assert (share[:, 0] != 0).mean() == pytest.approx(0.5, abs=0.05)
     moved = np.sort(share[share != 0])
     assert moved == pytest.approx(np.linspace(-1, 1, len(moved)), abs=0.08)
-
-
-def test_children_differ_in_one_point():
-    """Children of children, by every kind of mutation, each as often as it should be."""
-    rng, grid = np.random.default_rng(0), drawn(0).workspace
-    path, child = np.array([[0.5, 0.5], [100.5, 100.5]]), np.empty((400, 2))
-    differences = []
-    for _ in range(398):
-        count = abc_ep._mutated(rng, grid.occupied, path, child, 2.5)
-        shared = set(map(tuple, path)) & set(map(tuple, child[:count]))
-        assert len(shared) >= len(set(map(tuple, path))) - 1
-        assert child[[0, count - 1]].tolist() == [[0.5, 0.5], [100.5, 100.5]]
-        differences.append((len(path), count - len(path)))
-        path = child[:count].copy()
-    assert all(change == 1 for before, change in differences if before == 2)
-    changes = np.array([change for before, change in differences if before > 2])
-    assert np.mean(changes == 0) == pytest.approx(0.6, abs=0.1)
-    assert np.mean(changes == -1) == pytest.approx(0.2, abs=0.08)
-
-
-def test_blocked_legs_cost_more_than_any_way_around():
-    occupied = np.zeros((20, 20), dtype=bool)
-    occupied[5:15, 10] = True
-    path = np.array([[2.5, 10.5], [18.5, 10.5], [18.5, 2.5]])
-    assert abc_ep._price(occupied, path) == 16 + 8 + 1e6
-
-
-def test_rank_is_by_wins_then_cost_and_the_cheapest_is_first():
-    rng = np.random.default_rng(1)
-    for _ in range(50):
-        cost = rng.integers(0, 8, 12).astype(float)
-        slots = rng.permutation(12)
-        wins = abc_ep._wins(rng, cost)
-        assert (wins[cost == cost.min()] == 5).all()
-        expected = sorted(slots.tolist(), key=lambda slot: (-wins[slot], cost[slot]))
-        abc_ep._rank(slots, wins, cost)
-        assert slots.tolist() == expected
-        assert cost[slots[0]] == cost.min()

@@ -161,12 +161,3 @@ def test_exploitation_takes_the_most_attractive_step():
     colony = search(ants=10, iterations=3, exploitation=1.0)
     assert (colony.paths[:, :6] == [0, 7, 14, 21, 28, 35]).all()
     assert (colony.history == 6 * math.sqrt(2)).all()
-
-
-@pytest.mark.parametrize("weights", [[1.0, 2.0, 3.0], [5.0, 0.0, 1.0]])
-def test_choices_are_in_proportion_to_attraction(weights):
-    rng, weights = np.random.default_rng(0), np.array(weights)
-    counts = np.bincount([ant_colony._choose(rng, weights, 0.0) for _ in range(3000)], minlength=3)
-    some = weights > 0
-    assert stats.chisquare(counts[some], 3000 * weights[some] / weights.sum()).pvalue > 1e-3
-    assert not counts[~some].any()

@@ -181,16 +181,6 @@ def flipped(mutation, probability, times):
     return found
 
 
-def test_one_bit_of_any_gene_is_complemented():
-    """Each of the 48 bits with the same chance, within four standard errors."""
-    found = flipped(binary_genetic.Mutation.one_bit, 1.0, 4800)
-    assert (found.sum(axis=(1, 2)) == 1).all()
-    assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
-    assert flipped(binary_genetic.Mutation.one_bit, 0.25, 4000).sum() == pytest.approx(
-        1000, abs=4 * math.sqrt(750)
-    )
-
-
 def test_one_bit_of_each_gene_is_complemented():
     found = flipped(binary_genetic.Mutation.each_gene, 1.0, 800)
     assert (found.sum(axis=2) == 1).all()

@@ -83,51 +83,6 @@ def is_path(cells, walls, columns):
     return bool((steps == 1).all() and not walls[cells].any())
 
 
-def test_walks_go_to_their_goal_over_free_neighbours():
-    rng = np.random.default_rng(0)
-    grid = rng.random((30, 30)) < 0.3
-    grid[0, 0] = grid[29, 29] = False
-    given = walker(grid)
-    columns = given.columns
-    walk = np.empty(2000, dtype=np.int64)
-    walk[0] = columns + 1
-    reached = 0
-    for _ in range(50):
-        count = grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30)
-        assert count <= 1001
-        if count:
-            reached += 1
-            assert walk[count - 1] == 30 * columns + 30
-            assert is_path(walk[:count], given.walls, columns)
-    assert reached > 40
-
-
-def test_a_walk_may_have_as_many_steps_as_allowed_and_no_more():
-    rng = np.random.default_rng(0)
-    columns = 12
-    walk = np.full(100, columns + 1)
-    free = np.zeros((10, 10), dtype=bool)
-    assert grid_genetic._extend(rng, walker(free, longest_walk=9), walk, 1, 10 * columns + 10) == 10
-    assert grid_genetic._extend(rng, walker(free, longest_walk=8), walk, 1, 10 * columns + 10) == 0
-
-
-def test_random_steps_lead_away_from_the_straight_walk_and_still_to_the_goal():
-    rng = np.random.default_rng(0)
-    columns = 32
-    free = np.zeros((30, 30), dtype=bool)
-    walk = np.full(20_002, columns + 1)
-    steps = []
-    for share in (0.0, 0.2, 0.5):
-        given = walker(free, longest_walk=20_000, random_step=share)
-        counts = [grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30) for _ in range(100)]
-        assert walk[counts[-1] - 1] == 30 * columns + 30
-        assert is_path(walk[: counts[-1]], given.walls, columns)
-        steps.append(np.mean(counts) - 1)
-    assert steps[0] == 29
-    # A random step takes the walk nowhere on average, so 1 / (1 - share) times as many are needed.
-    assert steps[1:] == pytest.approx([29 / 0.8, 29 / 0.5], rel=0.15)
-
-
 def test_loops_are_cut_from_the_last_visit_on():
     rng = np.random.default_rng(0)
     last_visit = np.empty(30, dtype=np.int64)
@@ -141,23 +96,6 @@ def test_loops_are_cut_from_the_last_visit_on():
         count = grid_genetic._cut_loops(cut, len(cut), last_visit)
         assert cut[:count].tolist() == expected
         assert len(set(expected)) == count
-
-
-def test_crossover_joins_at_an_inner_cell_of_both():
-    rng = np.random.default_rng(0)
-    head, tail = np.array([0, 1, 2, 3, 4, 5]), np.array([0, 9, 3, 8, 1, 5])
-    place, common, walk = (
-        np.full(10, -1),
-        np.empty(10, dtype=np.int64),
-        np.empty(20, dtype=np.int64),
-    )
-    children = set()
-    for _ in range(100):
-        count = grid_genetic._join(rng, head, tail, place, common, walk)
-        children.add(tuple(walk[:count].tolist()))
-        assert (place == -1).all()
-    assert children == {(0, 1, 5), (0, 1, 2, 3, 8, 1, 5)}
-    assert grid_genetic._join(rng, head, np.array([0, 9, 8, 5]), place, common, walk) == 0
 
 
 @pytest.mark.filterwarnings("ignore::numba.NumbaPendingDeprecationWarning")
@@ -218,16 +156,3 @@ def test_mutation_replaces_what_lies_between_two_cells():
         shorter += count < len(path)
         assert grid_genetic._cost(walk, count, columns, 1.5) <= 38
     assert 60 < shorter < 140
-
-
-def test_a_failed_walk_leaves_the_path_as_it_is():
-    given = walker(np.zeros((20, 20), dtype=bool), longest_walk=1)
-    columns = given.columns
-    path = np.array([row * columns + 1 for row in range(1, 21)])
-    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walls), dtype=np.int64)
-    walk[:20] = path
-    for seed in range(20):
-        assert (
-            grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20
-        )
-        assert np.array_equal(walk[:20], path)

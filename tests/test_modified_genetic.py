@@ -19,6 +19,7 @@ from bezierplan.papers.elhoseny2017.functions import q
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import gene_curves, gene_lattice, gene_lists
 from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -205,19 +206,6 @@ def test_first_sights_among_single_cells_never_change_a_verdict():
     assert seen.min() > 100
 
 
-@given(
-    numpy.arrays(float, st.tuples(st.integers(3, 12), st.just(2)), elements=st.floats(0, 100)),
-    st.integers(1, 40),
-)
-def test_a_curve_keeps_close_to_the_chords_of_its_parts(points, count):
-    x, y = cell_length.sample(points, 16 * count)
-    share = np.tile(np.arange(16) / 16, count)
-    for values in (x, y):
-        ends = values[::16]
-        chord = np.repeat(ends[:-1], 16) * (1 - share) + np.repeat(ends[1:], 16) * share
-        assert np.abs(values[:-1] - chord).max() <= gene_curves._from_chords(points, count) + 1e-9
-
-
 @pytest.mark.parametrize(
     ("reach", "away", "free"),
     [((4, 4), 0.0, True), ((4, 3), 0.0, False), ((4, 4), 0.1, False), ((6, 4), 1.0, True)],
@@ -324,17 +312,27 @@ def test_children_that_are_not_crossed_mutate_as_well():
     assert found.extra["valid_share"] < 1.0
 
 
-def test_the_best_survive_and_of_equal_ones_the_first():
-    pool = gene_lists.empty_pool(6, 120)
-    for place, cost in enumerate([5.0, 3.0, 4.0, 3.0, 9.0, 4.0]):
-        gene_lists.put(np.array([place]), 1, cost, pool, place)
-    gene_lists.select(pool, 3, 6)
-    assert pool.ones[:3, 0].tolist() == [1, 3, 2]
-    assert pool.cost[:3].tolist() == [3.0, 3.0, 4.0]
-    for place, cost in enumerate([5.0, 5.0, 5.0, 9.0, 5.0, 4.0]):
-        gene_lists.put(np.array([place]), 1, cost, pool, place)
-    gene_lists.select(pool, 3, 6)
-    assert pool.ones[:3, 0].tolist() == [5, 0, 1]
+@given(numpy.arrays(float, st.integers(0, 30), elements=st.integers(0, 5).map(float)))
+def test_ascending_is_a_stable_order(values):
+    assert ascending(values).tolist() == np.argsort(values, kind="stable").tolist()
+
+
+def test_q_of_a_pool_is_the_mean_over_all_pairs():
+    rng = np.random.default_rng(11)
+    rows = rng.random((12, 441)) < 0.02
+    rows[:, 7] = True
+    rows[5] = rows[3]
+    pool = gene_lists.empty_pool(12, 120)
+    for place, row in enumerate(rows):
+        ones = np.flatnonzero(row)
+        gene_lists.put(ones, len(ones), 1.0, pool, place)
+    every = [q(rows[i], rows[j]) for j in range(12) for i in range(j)]
+    assert gene_lists.sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
+    first = [q(rows[i], rows[j]) for j in range(8) for i in range(j)]
+    parts = gene_lists.sum_of_q(pool, 0, 8, 441) + gene_lists.sum_of_q(pool, 8, 12, 441)
+    assert parts == pytest.approx(sum(every), rel=1e-12)
+    assert sum(first) != sum(every)
+    assert gene_lists.kinds_of(pool, 12)[0] == 11
 
 
 def test_q_statistic():

@@ -437,30 +437,13 @@ def test_repaired_random_mutation_stays_feasible():
 
 
 def test_random_mutation_draws_occupied_cells_if_it_may():
-    where = ENVIRONMENTS["env1_initial"]
-    drawn_from = {}
-    for drawn in ("free", "any"):
-
-        def search(starts, moves, ground, start, target, free, cells, *_, drawn=drawn):
-            drawn_from[drawn] = cells.tolist()
-            return node_genetic._NOTHING
-
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(node_genetic, "_search", search)
-            plan(where, 1, mutation="random", random_node=drawn)
-    occupied = where.workspace.occupied.ravel()
-    assert drawn_from == {
-        "free": [cell for cell in range(1, 255) if not occupied[cell]],
-        "any": list(range(1, 255)),
-    }
-    # One mutation draws any of them, each as likely as another.
-    found = [mutated([0, 1, 255], where.workspace, "random", seed)[0][1] for seed in range(4000)]
-    assert set(found) == set(drawn_from["free"])
-    # With occupied cells more of the feasible paths are spoilt.
+    """Then more of the feasible paths are spoilt."""
     shares = {
         drawn: np.mean(
             [
-                plan(where, seed, mutation="random", random_node=drawn).extra["made_infeasible"]
+                plan(
+                    ENVIRONMENTS["env1_initial"], seed, mutation="random", random_node=drawn
+                ).extra["made_infeasible"]
                 for seed in range(10)
             ]
         )
