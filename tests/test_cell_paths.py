@@ -205,30 +205,6 @@ def test_a_walk_meets_its_end_without_a_cell_twice(seed, tries):
         assert len(set(part[:size].tolist())) == size
 
 
-def test_a_fish_forages_by_its_tries():
-    """From a corner two of the three neighbours are nearer to a target further along the row; then
-    every neighbour is as likely.
-    """
-    visited, rng = marks_of(OPEN), np.random.default_rng(0)
-    counts = {tries: np.zeros(len(visited)) for tries in (0, 1)}
-    for tries, count in counts.items():
-        for _ in range(3000):
-            count[cell_paths.forage(rng, OPEN, 0, COLUMNS - 1, tries, visited)] += 1
-    third, nearer = 1 / 3, 1 / 3 + 1 / 9
-    reached = [1, COLUMNS, COLUMNS + 1]
-    assert stats.chisquare(counts[0][reached], 3000 * np.array([third, third, third])).pvalue > 1e-3
-    assert (
-        stats.chisquare(counts[1][reached], 3000 * np.array([nearer, third**2, nearer])).pvalue
-        > 1e-3
-    )
-
-
-def test_a_fish_among_visited_cells_has_nowhere_to_go():
-    visited = marks_of(OPEN)
-    visited[[1, COLUMNS, COLUMNS + 1]] = 1
-    assert cell_paths.forage(np.random.default_rng(0), OPEN, 0, COLUMNS - 1, 8, visited) == -1
-
-
 def first_paths(places, seed, population=8, longest=60):
     """Paths from start to target through random cells."""
     rng, marks = np.random.default_rng(seed), marks_of(places)

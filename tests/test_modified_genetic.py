@@ -371,38 +371,14 @@ def test_points_are_joined_by_their_distance_over_free_cells():
     assert inner.tolist() == [[x + 0.5, y + 0.5] for x, y in way]
 
 
-def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_maze():
-    grid, maze_field = maze()
-    task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
-    settings = rules(population=5, first_population="roadmaps")
-    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, settings)
-    assert len(first) == len(counts) > 0
-    for ones, count in zip(first, counts):
-        genes = ones[:count]
-        assert np.all(np.diff(genes) > 0)
-        assert maze_field.settable[genes].all()
-        # The way leads through both gaps.
-        points = maze_field.points[genes]
-        assert ((points[:, 0] >= 6) & (points[:, 1] < 7)).any()
-        assert ((points[:, 0] <= 3) & (points[:, 1] > 2)).any()
-
-
-def test_a_change_removes_adds_or_shifts_one_point_each_as_often():
-    _, maze_field = maze()
-    rng, before = np.random.default_rng(2), {9 * 4 + 0, 9 * 8 + 4, 9 * 0 + 6}
-    tally = {-1: 0, 0: 0, 1: 0}
-    for _ in range(3000):
-        child = np.zeros(planner._ROOM, dtype=np.int64)
-        child[:3] = sorted(before)
-        count = planner._change_point(rng, child, 3, maze_field)
-        after = set(child[:count].tolist())
-        assert len(after) == count
-        assert maze_field.settable[list(after)].all()
-        assert len(before - after) == (count <= 3 and after != before)
-        tally[count - 3] += 1
-    assert tally[-1] / 3000 == pytest.approx(1 / 3, abs=0.04)
-    # Of the additions, those that draw a point that is there already change nothing.
-    assert tally[1] / 3000 == pytest.approx(1 / 3, abs=0.04)
+@pytest.mark.parametrize("seed", range(3))
+def test_only_mga_c_finds_a_way_through_the_maze(seed):
+    """By first paths from roadmaps and changes of single points."""
+    task, few = Problem("maze", maze()[0], (0.5, 0.5), (8.5, 8.5)), FEW | {"population": 40}
+    found = planned("elhoseny2017", "mga_c", task, seed, **few | {"iterations": 40})
+    assert_path_fits(task, found)
+    assert found.claimed_feasible
+    assert not run(task, seed, **few).claimed_feasible
 
 
 def test_a_warm_start_is_never_worse_than_the_path_that_it_starts_from():

@@ -151,22 +151,6 @@ def test_paths_on_a_grid_touch_no_occupied_cell(number):
     assert found.objective == pytest.approx(curves.length(found.path))
 
 
-def test_nodes_on_a_grid_are_uniform_in_free_cells():
-    grid = drawn(0).workspace
-    low, high, is_free, _ = prm._on_grid(grid, 0.0)
-    assert (low.tolist(), high.tolist()) == ([0, 0], [100, 100])
-    nodes = prm._free_points(np.random.default_rng(0), 5000, low, high, is_free)
-    column, row = np.floor(nodes + 0.5).astype(int).T
-    assert not grid.occupied[row, column].any()
-    assert len(nodes) == 5000
-    # A quarter of the nodes in each quarter of the field, as far as it is free.
-    free = np.array(
-        [(~grid.occupied[r : r + 51, c : c + 51]).sum() for r in (0, 50) for c in (0, 50)]
-    )
-    counts = np.histogram2d(row, column, bins=[0, 50.5, 101])[0].ravel()
-    assert counts == pytest.approx(5000 * free / free.sum(), abs=4 * math.sqrt(1250))
-
-
 def test_a_grid_has_no_distance_to_keep():
     with pytest.raises(ValueError, match=r"d_min: 0\.5; on a grid expected 0"):
         plan(drawn(0), d_min=0.5)
