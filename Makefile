@@ -40,9 +40,8 @@ extended: .venv/ready ## both, with hundreds to thousands of runs per method, in
 	@$(UNLOCK)
 	$(SNAKEMAKE) extended $(ARGS)
 
-test: lint ## lint, the smoke subset, and the tests (with ALL=1 also those of clusters, archives and the like; ARGS go to pytest)
-	@$(UNLOCK)
-	$(SNAKEMAKE) smoke
+test: .venv/ready-dev ## lint, the smoke subset, and the tests (with ALL=1 also those of clusters, archives and the like; ARGS go to pytest)
+	@$(MAKE) --no-print-directory --jobs 2 ARGS= lint smoke
 	$(RUN) -m pytest -n auto --dist loadfile $(if $(ALL),,-m "not rare") $(ARGS)
 
 lint: .venv/ready-dev ## code style, import layers and types
