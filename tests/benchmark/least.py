@@ -127,11 +127,6 @@ def _written_samples(_, points, last, first, stride, count, *__):
     return {"terms": count * len(points)}
 
 
-def _particle(_, particle, objective, *__):
-    n, samples = objective.free.shape
-    return {"terms": n * samples, "roots": samples - 1}
-
-
 def _violation(_, curve, objective, __):
     x, y = curve[0], curve[1]
     polygons = objective.polygons
@@ -189,7 +184,8 @@ COUNTS: dict[Dispatcher, Count] = {
     cell_length.occupied_cells: lambda _, columns, *__: {"cells": len(columns)},
     cell_length.is_free_leg: _leg,
     gene_curves._reach: lambda *_: {"cells": 1},
-    penalised.length: _particle,
+    penalised.write_curve: lambda _, particle, objective, *__: {"terms": objective.free.size},
+    penalised.length: lambda _, curve, *__: {"roots": curve.shape[1] - 1},
     penalised.violation: _violation,
     bca._measure: _measured_by_bca,
     binary_genetic._measure: _stretch,

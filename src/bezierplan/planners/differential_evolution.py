@@ -180,7 +180,8 @@ def _three_others(rng, i, population):
 def _cost(vector, objective, occupied, rules, scratch):
     """Length with what its violation adds, and the violation."""
     curve, chords = scratch
-    length = penalised.length(vector, objective, curve, chords)
+    penalised.write_curve(vector, objective, curve)
+    length = penalised.length(curve, chords)
     if len(occupied) == 0:
         violation = penalised.violation(curve, objective, chords)[0]
     elif rules.collision == Collision.samples:
