@@ -183,8 +183,9 @@ def _draw_legend(figure: Figure, names: Mapping[Any, str]) -> None:
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
             found.setdefault(names.get(label, label), handle)
-    order = [*names.values(), *(label for label in found if label not in style.LAST), *found]
-    handles = {label: found[label] for label in dict.fromkeys(order) if label in found}
+    others = sorted(found, key=lambda label: label.startswith(style.LAST))
+    order = dict.fromkeys([*names.values(), *others])
+    handles = {label: found[label] for label in order if label in found}
     for columns in range(len(handles), 0, -1):
         legend = figure.legend(
             handles.values(), handles.keys(), loc="outside lower center", ncols=columns

@@ -124,16 +124,8 @@ INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
 HOLLOW = mark("o", 3.5, BLACK, markerfacecolor=FREE)
 HOLLOW_LABEL = "hollow: some runs are not feasible"
 
-# Labels that stand last in a legend, because they are about all others.
-LAST = {
-    INTERVAL["label"],
-    HOLLOW_LABEL,
-    f"{INTERVAL['label']} at the end",
-    "published",
-    "published mean",
-    "published final mean",
-    "published minimum and maximum",
-}
+# How labels begin that stand last in a legend, because they are about all others.
+LAST = (INTERVAL["label"], "hollow", "published")
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
