@@ -26,7 +26,7 @@ RULES = ("runs", "table", "all", "default")
 
 def fault(given):
     with pytest.raises(Fault) as caught:
-        reading.check_names(given, RULES)
+        reading.check_names(given)
     return str(caught.value)
 
 
@@ -37,7 +37,7 @@ def elsewhere(tmp_path, key):
 
 
 def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
-    reading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"), RULES)
+    reading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"))
 
 
 @pytest.mark.parametrize(

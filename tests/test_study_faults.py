@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from bezierplan.__main__ import main
 from bezierplan.running.guard import interface, process
 from bezierplan.schema import checked
 from bezierplan.study import reading
@@ -115,6 +116,21 @@ def test_a_fault_of_a_further_file_is_told_in_one_line(name, text, expected, tmp
     folder = copy("walks", tmp_path)
     (folder / name).write_text(text)
     assert expected in told(folder)
+
+
+@pytest.mark.parametrize("name", ["artifacts.yaml", "claims.yml", "Layout.yaml"])
+def test_a_file_of_a_study_that_nothing_reads_is_told(name, tmp_path):
+    folder = copy("walks", tmp_path)
+    (folder / name).write_text("{}")
+    assert f"{name}: no file of a study; did you mean " in told(folder)
+
+
+@pytest.mark.parametrize("name", ["my study", "müller", "all", "song2016"])
+def test_a_name_that_run_refuses_is_refused_by_check_study(name, tmp_path, capsys):
+    shutil.copytree(DATA / "walks", tmp_path / name)
+    with pytest.raises(SystemExit):
+        main(["check-study", str(tmp_path / name)])
+    assert "rename the folder" in (said := capsys.readouterr().err) or "another name" in said
 
 
 @pytest.mark.parametrize(

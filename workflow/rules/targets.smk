@@ -1,14 +1,7 @@
 # Names for what a user may want: the papers, what goes beyond them, a scale, a study, a table or
 # figure. `snakemake --list-target-rules` lists them.
 
-or_exit(
-    reading.check_names,
-    STUDIES,
-    [
-        *(rule.name for rule in workflow.rules),
-        *("all", "smoke", "beyond", "extended", "readings", "default"),
-    ],
-)
+or_exit(reading.check_names, STUDIES)
 
 
 rule all:

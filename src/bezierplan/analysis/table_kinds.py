@@ -140,7 +140,7 @@ class Pivot(Table):
     index: Columns = Field(
         description="a list of columns of the runs table, `value` or `statistic`: what the rows are"
     )
-    columns: Columns = Field([], description="likewise: what the columns are")
+    columns: Columns = Field([], description="a list as in `index`: what the columns are")
     values: list[TableValue] = Field(
         description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
         min_length=1,

@@ -18,5 +18,5 @@ def main(folder: Path) -> None:
     """
     from bezierplan.study import reading
 
-    reading.load([folder])
+    reading.check_names(reading.load([folder]))
     print(f"{folder}: no fault")

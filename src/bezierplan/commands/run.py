@@ -51,7 +51,10 @@ def command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
     snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
     snakemake += ["--workflow-profile", str(TREE / "profiles" / "default")]
-    folders = [study_named(word) for word in words if is_study(word)]
-    others = [word for word in words if not is_study(word)]
-    config = ["--config", f"studies={json.dumps(folders)}"] if folders else []
+    # A word that stands there again is a target: a folder may have the name of one.
+    folders = {word: study_named(word) for word in words if is_study(word)}
+    others = [*words]
+    for word in folders:
+        others.remove(word)
+    config = ["--config", f"studies={json.dumps([*folders.values()])}"] if folders else []
     return [*snakemake, *others, *config]

@@ -115,6 +115,8 @@ def closest(word: Any, names: Iterable[Any]) -> str:
     """
     words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)
+    # Of another meaning, but of the same unit, such as cpu_s for wall_s.
+    near = near or [each for each in words if str(word).endswith(f"_{each.rpartition('_')[2]}")]
     hint = f"; did you mean {near[0]}?" if near else ";"
     if len(words) > 40:
         listed = difflib.get_close_matches(str(word), words, n=10, cutoff=0.0)

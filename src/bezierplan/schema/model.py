@@ -51,7 +51,7 @@ class Model(BaseModel):
                 raise wrong(f"{key}: unknown key{closest(key, fields)}")
         for key, field in fields.items():
             if field.is_required() and key not in content:
-                raise wrong(f"{key}: missing key; {field.description or 'expected it'}")
+                raise wrong(f"{key}: missing key; {field.description}")
         return content
 
     @field_validator("*", mode="wrap")

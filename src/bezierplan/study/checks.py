@@ -2,6 +2,7 @@
 free places, matching published numbers. Every fault is one line, and all are found at once.
 """
 
+import difflib
 import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator
@@ -377,10 +378,12 @@ class Checks:
         """
         study = self.study
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
-        words = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
-        words += [*metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words]
+        own = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
+        words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
-            check_all(getattr(each, "labels", {}), words, "labels")
+            for name in getattr(each, "labels", {}).keys() - words:
+                near = difflib.get_close_matches(name, own)
+                check_known(name, near or words, "labels")
 
     def figure(self, name: str, figure: Figure) -> None:
         """Its panels' names exist."""

@@ -81,7 +81,7 @@ class Problem(Model):
     start_cell: Whole = Field(
         None, description="on grids, the number of a cell: from 0, row by row from the bottom left"
     )
-    target_cell: Whole = Field(None, description="likewise")
+    target_cell: Whole = Field(None, description="the number of a cell, as `start_cell`")
     settings: Settings = Field(
         {},
         description="settings for this problem; they take precedence over the study's, a method's "

@@ -19,7 +19,7 @@ from bezierplan.machine.modules import code_of
 from bezierplan.places import PACKAGE, STUDIES, TREE, cache_folder, relative
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_known, closest
-from bezierplan.schema.model import parsed, sound_part
+from bezierplan.schema.model import Model, named, parsed, sound_part
 from bezierplan.schema.words import told
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
@@ -202,6 +202,8 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             broken += fault.lines
     if broken:  # What others say of such a file's names would follow from it.
         raise Fault(*broken, *faults)
+    if not faults and (strange := _strange(folder, content["workspaces"])):
+        raise Fault(*strange)
     for name, value in changes.items():
         own = content["settings"].get(name)
         content["settings"][name] = (
@@ -210,11 +212,21 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     return Study.of(folder, content), faults, invalid
 
 
-def check_names(studies: Mapping[str, Study], others: Iterable[str]) -> None:
-    """Raise Fault for a study whose results or targets would clash with others. others: names of
-    rules and other targets.
-    """
-    targets = {*others}
+def _strange(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
+    """Faults of YAML files that nothing reads: their names may be misspelt."""
+    known = [*(f"{name}.yaml" for name in FILES), "verdict.yaml"]
+    maps = [name for home in workspaces.values() for _, what, name in named(home) if what == "file"]
+    return [
+        f"{relative(file)}: no file of a study{closest(file.name, known)}"
+        for file in sorted([*folder.glob("*.yaml"), *folder.glob("*.yml")])
+        if file.name not in (*known, *maps)
+    ]
+
+
+def check_names(studies: Mapping[str, Study]) -> None:
+    """Raise Fault for a study whose results or targets would clash with others."""
+    rules = [file.read_text() for file in (TREE / "workflow" / "rules").glob("*.smk")]
+    targets = {"default", *re.findall(r"^(?:use )?rule (?:\w+ as )?(\w+)", "\n".join(rules), re.M)}
     for key, study in studies.items():
         location = relative(study.folder)
         check_name(key, f"{location}: {key}")

@@ -81,7 +81,7 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
 
 def _content(text: str) -> dict[str, Any]:
     try:
-        content = json.loads(text)
+        content = json.loads(text, object_pairs_hook=_object)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"not GeoJSON ({error})") from None
     if not isinstance(content, dict):
@@ -89,6 +89,16 @@ def _content(text: str) -> dict[str, Any]:
     named = str(content.get("crs")).upper()
     if any(name in named for name in ("CRS84", "4326", "WGS84", "WGS 84")):
         raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths")
+    return content
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object of a file. Raises ValueError for a key that is given twice: one would be lost."""
+    content: dict[str, Any] = {}
+    for key, entry in pairs:
+        if key in content:
+            raise ValueError(f"{key}: this key is given twice")
+        content[key] = entry
     return content
 
 
@@ -129,6 +139,7 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
             f"{name}: geometry: expected a Polygon, a MultiPolygon, or a GeometryCollection of "
             "these, of rings of [x, y] or of [x, y, height]"
         )
+    _check_rings(feature["geometry"], name)
     for polygon in polygons:
         check_numbers(shapely.get_coordinates(polygon), name)
         if not polygon.is_valid:
@@ -142,6 +153,20 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
             if angles.min() < SMALLEST_ANGLE:
                 raise ValueError(f"{name}: an angle below {SMALLEST_ANGLE:g} rad")
         yield Shape(name, role, polygon)
+
+
+def _check_rings(geometry: dict[str, Any], name: str) -> None:
+    """Raise ValueError for a ring that does not end where it begins: a position may be missing."""
+    for part in geometry.get("geometries", []):
+        _check_rings(part, name)
+    rings = geometry.get("coordinates", [])
+    if geometry["type"] == "MultiPolygon":
+        rings = [ring for polygon in rings for ring in polygon]
+    for first, *_, last in rings:
+        if first != last:
+            raise ValueError(
+                f"{name}: a ring begins at {first} and ends at {last}; expected the same position"
+            )
 
 
 def _border(

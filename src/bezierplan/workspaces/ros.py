@@ -8,6 +8,7 @@ in part counts as occupied, and so does what is unknown, unless it is asked to b
 first row is the top of the map.
 """
 
+import difflib
 import math
 from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any, Literal
@@ -51,7 +52,7 @@ class Content(Model):
     image: Line = Field(description="the name of an image beside it")
     resolution: Positive = Field(description="units per pixel, a number above 0")
     origin: Annotated[list, value(_is_origin, "[x, y, 0], a map that is not turned")] = Field(
-        description="[x, y, yaw] of the lower left pixel's corner"
+        description="[x, y, 0], the lower left pixel's corner and no yaw"
     )
     negate: Literal[0, 1, False, True] = Field(0, description="0 (dark is occupied) or 1")
     occupied_thresh: NotNegative = Field(0.65, description="a number of at least 0")
@@ -100,10 +101,15 @@ def image_of(file: Path, folder: Path) -> Path:
 
 
 def _content(file: Path) -> Content:
-    """The keys of a map_server YAML file, checked; others are ignored."""
-    content = checked.parse(read_text(file), file.name)
+    """The keys of a map_server YAML file, checked; others are ignored, unless one looks like a key
+    that is misspelt.
+    """
+    content, keys = checked.parse(read_text(file), file.name), Content.model_fields
     if isinstance(content, dict):
-        content = {key: entry for key, entry in content.items() if key in Content.model_fields}
+        for key in content.keys() - keys:
+            if difflib.get_close_matches(key.lower(), keys, cutoff=0.7):
+                raise checked.Fault(f"{key}: unknown key{checked.closest(key, keys)}")
+        content = {key: entry for key, entry in content.items() if key in keys}
     try:
         return Content.model_validate(content)
     except ValidationError as error:

@@ -73,9 +73,9 @@ TOGETHER = (
 )
 POOL = "a list of columns whose values are averaged with equal weight"
 GROUPS = (
-    "a list of values of the column `across`, or rest: the artefact's groups that are not named"
+    "a list of values of the column `across`; [rest] names the artefact's groups that are not named"
 )
-THAN = "likewise: what the groups are compared with, each with each"
+THAN = "a list of what the groups are compared with, each with each, such as [rest]"
 SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
 STATISTIC = (
     "the statistic that is compared: rank (left out: this), mean, median, std, iqr, range, min or "

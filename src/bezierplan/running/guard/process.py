@@ -34,6 +34,8 @@ MOST_PRINTED = 20_000
 
 # Longest pause, in seconds, between two looks at whether a process is done.
 _LOOK = 0.05
+_STARTS = 60
+"""Seconds that a process of runs has at least to start."""
 
 
 def made(
@@ -59,7 +61,7 @@ def made(
         "again": again,
     }
     for number, found, cpu, wall, drew in answers(
-        "guard.worker.plain_answers", parts, name, limit, hashing
+        "guard.worker.plain_answers", parts, name, limit, hashing, _STARTS
     ):
         with plain_values(name):
             yield worker.Reply(
@@ -68,13 +70,19 @@ def made(
 
 
 def answers(
-    work: str, arguments: dict[str, Any], name: str, limit: float | None = None, hashing: int = 0
+    work: str,
+    arguments: dict[str, Any],
+    name: str,
+    limit: float | None = None,
+    hashing: int = 0,
+    starts: float = 0.0,
 ) -> list[Any]:
     """What a function answers in a process of its own.
 
     work: the function, as module and name in `bezierplan.running`; of a function to call with the
     name of each run that begins, and of `arguments`, it yields plain values. name: what messages
-    begin with before that. limit: seconds for each run. hashing: seed of `hash`. Raises
+    begin with before that. limit: seconds for each run. hashing: seed of `hash`. starts:
+    seconds that the process has at least until the first run begins, whatever the limit. Raises
     PlannerFailure, naming the run, if the function raises an exception, the process crashes, ends
     itself, takes too long or leaves others behind.
     """
@@ -96,7 +104,7 @@ def answers(
                 start_new_session=True,
             )
             try:
-                ended, took = _awaited(process, lines, limit)
+                ended, took = _awaited(process, lines, limit, starts)
             finally:
                 with suppress(ProcessLookupError, PermissionError):
                     os.killpg(process.pid, signal.SIGKILL)
@@ -110,9 +118,11 @@ def _path() -> str:
     return os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]))
 
 
-def _awaited(process: subprocess.Popen, lines: Path, limit: float | None) -> tuple[str, float]:
+def _awaited(
+    process: subprocess.Popen, lines: Path, limit: float | None, starts: float
+) -> tuple[str, float]:
     """How a process has ended, and its CPU seconds; it may take as long as `limit` from one line to
-    the next.
+    the next, and at least `starts` until the first.
     """
     size, since, pause = -1, 0.0, 0.001
     while True:
@@ -122,8 +132,10 @@ def _awaited(process: subprocess.Popen, lines: Path, limit: float | None) -> tup
             return how_ended(status), usage.ru_utime + usage.ru_stime
         if (now := lines.stat().st_size) != size:
             size, since = now, time.monotonic()
-        elif limit is not None and time.monotonic() - since > limit:
-            return f"not done within the time limit of {limit:g} s; it is ended", math.nan
+        elif limit is not None:
+            allowed = limit if size else max(limit, starts)
+            if time.monotonic() - since > allowed:
+                return f"not done within the time limit of {allowed:g} s; it is ended", math.nan
         time.sleep(pause)
         pause = min(2 * pause, _LOOK)
 
