@@ -25,7 +25,7 @@ OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
 # What the stored outcome says of a claim.
 _OF_CLAIM = (
-    *("verdict", "holds", "where_it_holds"),
+    *("verdict", "readings", "holds", "where_it_holds"),
     *("reason", "published", "n", "effect"),
 )
 

@@ -9,9 +9,9 @@ from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema.model import one_or_list
 
-TIMES, LEAST, MOST = 10, 100, 500
+TIMES, LEAST = 5, 100
 """Repeats of each method on each problem, if config does not say how many: so many times the
-paper's, at least and at most so many.
+paper's, and at least so many.
 """
 LAYOUTS, IN_EACH = 50, 3
 """Random layouts, and repeats in each, at most."""
@@ -64,7 +64,7 @@ def experiment(
             for table in tables
         )
 
-    repeats = repeats or min(max(TIMES * size, LEAST), MOST)
+    repeats = repeats or max(TIMES * size, LEAST)
     own_chunks = {}
     for method, chunk in chunks.items():
         if not shown("method", method):

@@ -4,7 +4,7 @@ An experiment of the paper's size is drawn from ours: n units (repeats, layouts,
 replacement, the same ones for all methods. Its numbers are scored by the units that were not drawn,
 those of the paper by all; p is the share of experiments that score as low as the paper. Drawn from
 the units that score it, an experiment would look too good (84 of 100 true ones were rejected at .05
-where n = 100 of 100 stored); so ten times n units are stored where that is affordable.
+where n = 100 of 100 stored); so five to ten times n units are stored.
 
 The score is the mean logarithm of the density of a number under our runs:
 

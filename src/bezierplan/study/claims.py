@@ -110,8 +110,8 @@ class AssumptionsFile(Model):
     reading_repeats: Count = Field(
         None,
         description="how many runs of each method under each condition judge a reading, a whole "
-        "number; left out: ten times the paper's, at least 100 and at most 500; fewer where "
-        "layouts are drawn",
+        "number; left out: five times the paper's, and at least 100; fewer where layouts are "
+        "drawn",
     )
     pairs: list[dict[AssumptionId, Setting]] = Field(
         [],

@@ -25,7 +25,7 @@ from bezierplan.analysis.readings import LEAST_P
 SIDES = {"supported": "holds", "partly": "holds", "contradicted": "fails", "no effect": "nothing"}
 """Decided verdict -> its side."""
 MOST_NAMED = 3
-"""Readings that are named; of more, the number is told."""
+"""Readings or variants that are named; of more, the number is told."""
 BY_DEFAULT = "under the default"
 
 
@@ -74,7 +74,7 @@ def told(claims: pd.DataFrame, readings: pd.DataFrame, verdicts: pd.DataFrame) -
         others = claims[(claims["id"] == claim["id"]) & ~claims["primary"].astype(bool)]
         others = others[others["verdict"].isin(SIDES) & (others["verdict"] != claim["verdict"])]
         for verdict, variants in others.groupby("verdict", sort=False)["variant"]:
-            words.append(f"{verdict} with {' or '.join(variants)}")
+            words.append(f"{verdict} with {_named([*variants], 'variants')}")
         if len(readings):
             own = verdicts[verdicts["id"] == claim["id"]].set_index("reading")["verdict"]
             own = own[own.index.isin(kept.index)]
@@ -101,6 +101,9 @@ def _turned(verdict: str, own: pd.Series, meanings: pd.Series) -> list[str]:
     words = []
     for other, names in turned.groupby(turned, sort=False).groups.items():
         named = [f"{meanings[each]} ({each.replace('=', ' = ')})" for each in names]
-        shown = " or ".join(named) if len(named) <= MOST_NAMED else f"{len(named)} readings"
-        words.append(f"{other} with {shown}")
+        words.append(f"{other} with {_named(named, 'readings')}")
     return words
+
+
+def _named(names: list[str], what: str) -> str:
+    return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} {what}"
