@@ -15,8 +15,9 @@ import pandas as pd
 import yaml
 
 from bezierplan.analysis import outcome
+from bezierplan.analysis.claims import sentences
 from bezierplan.commands import studies_of
-from bezierplan.figures.page import build, reader, why
+from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
 
@@ -94,7 +95,8 @@ def _as_stored(study: SimpleNamespace) -> None:
         for cell in table["numbers"]:
             if stored := cell["stored"]:
                 cell |= {name: value for name, value in stored.items() if name in cell}
-                cell |= reader.nearness(cell) | {"stored": None}
+                own = None if stored["verdict"] == "identified" else stored["verdict"]
+                cell |= reader.nearness(cell) | {"stored": None, "own": own}
         for _, cells in (table["laid"] or {"rows": []})["rows"]:
             cells[:] = [(printed, _like(own, cell), cell) for printed, own, cell in cells]
     study.gap = reader.gap(study.tables)
@@ -103,8 +105,8 @@ def _as_stored(study: SimpleNamespace) -> None:
             if claim["why"] and stored["verdict"] != claim["verdict"]:
                 claim["why"] = f"In fewer runs, which say {claim['verdict']}: {claim['why']}"
             claim |= {name: stored[name] for name in _OF_CLAIM} | {"stored": None}
-            claim["rule"] = why.rule(
-                study.job.holds.get(claim["id"]), claim["verdict"], claim["holds"]
+            claim["rule"] = sentences.rule(
+                study.job.claims.get(claim["id"]), claim["verdict"], claim["holds"]
             )
 
 

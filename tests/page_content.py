@@ -1,5 +1,6 @@
 """A small page with every kind of content, hostile names among them, from files of results."""
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -50,7 +51,7 @@ NUMBERS[1]["value_ours_scaled"] = 14.0
 NUMBERS[2]["why"] = "interval without an end on that side"
 
 CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
-CLAIM |= {"own_criterion": False, "place": "IV, Table I", "holds": "1 of 2", "n": 10}
+CLAIM |= {"own_criterion": False, "main": False, "place": "IV, Table I", "holds": "1 of 2", "n": 10}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
 CLAIMS = [
@@ -69,10 +70,16 @@ CLAIMS = [
 ]
 
 CHECK = {"variant": "metric=length", "check": 1, "primary": True, "decisive": True, "test": "lower"}
-CHECK |= {"metric": "length", "statistic": "mean", "unit": "unit", "condition": "problem=p"}
+CHECK |= {
+    "metric": "length",
+    "statistic": "mean",
+    "unit": "unit",
+    "place": json.dumps({"problem": "p"}),
+}
 WHOLE = {"study": "one", "table": "table1", "place": HOSTILE, "metric": "length", "printed": 10.5}
 WHOLE |= {"quantity": "level", "low95_predicted": 10, "high95_predicted": 11, "in_range": True}
-CHECK |= {"comparison": "b lower than c", "mark": "+", "mark_family": "+", "effect": -1.0}
+CHECK |= {"group": "b", "relation": "lower than", "other": "c", "together": None}
+CHECK |= {"mark": "+", "mark_family": "+", "effect": -1.0}
 CHECK |= {"low95": -2.0, "high95": -0.2, "margin": 0.5, "effect_published": -2.0, "counted": None}
 OPEN = {"decisive": False, "mark": "?", "mark_family": "?", "effect": 0.4, "low95": None}
 LOWER = {"test": "lower", "experiment": "e", "metric": "length", "groups": ["b"], "than": ["c"]}
@@ -93,8 +100,14 @@ def job() -> PageJob:
         paper=Citation(HOSTILE, "A journal, 2000", "10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
         methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
-        checks={claim: [kinds.check_of(LOWER)] for claim in claims},
-        holds=dict.fromkeys(claims, "any"),
+        claims={
+            name: SimpleNamespace(
+                checks=[kinds.check_of(LOWER)],
+                holds="any",
+                variants={"metric": ["length", "objective"]},
+            )
+            for name in claims
+        },
         repeats={"smoke": [2, 3], "extended": [250, 4000]},
         tables={
             "table1": TableView(HOSTILE, "Ten runs", table, HOSTILE),

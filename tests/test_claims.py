@@ -3,6 +3,7 @@ and degenerate runs.
 """
 
 import itertools
+import json
 import math
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,14 +14,14 @@ import pytest
 from scipy import stats
 
 from bezierplan.analysis import metrics, statistics, words
-from bezierplan.analysis.claims import columns, kinds, variants, verdicts
+from bezierplan.analysis.claims import columns, kinds, sentences, variants, verdicts
 from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.claims.ranks import signed_rank_test
-from bezierplan.analysis.claims.verdicts import Entry
+from bezierplan.analysis.claims.sentences import Entry
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
 from bezierplan.schema import checked
@@ -103,6 +104,11 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
     return judging.judge(job, results, given["published"], given["functions"])
 
 
+def compared(checks: pd.DataFrame) -> list[str]:
+    """What rows of comparisons compare."""
+    return [f"{row.group} {row.relation} {row.other}" for row in checks.itertuples()]
+
+
 def judged(check: dict, *runs: pd.DataFrame, **material) -> pd.Series:
     """The row of the deciding variant of a claim of one check."""
     return judge({"checks": [check]}, *runs, **material)[0].iloc[0]
@@ -148,7 +154,7 @@ def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
         or "in grid" in claims.iloc[0]["where_it_holds"]
     )
     deciding = checks[checks["primary"]]
-    assert deciding["comparison"].to_list() == ["all 3 together"] * 2
+    assert deciding["together"].to_list() == [3, 3]
     assert deciding["mark"].to_list() == ["+", "-"]
     assert checks.loc[~checks["primary"], "mark"].to_list() == ["+", "+", "+", "-", "+", "+"]
     del check["every"]
@@ -163,6 +169,46 @@ def test_a_superlative_that_fails_by_the_closest_alone_says_against_which_it_hol
     assert row["where_it_holds"] == "one by one against c and d; undecided in 1 of 3"
     third = table({"a": sample("a"), "b": sample("b", -2), "c": sample("c", -2)})
     assert judged(LOWER | {"than": ["b", "c"], "together": True}, third)["where_it_holds"] == ""
+
+
+NAMES = {
+    "words of a sentence": ("lower", "higher", "low inertia", "high inertia"),
+    "parts of relations": ("a lower than b", "than, as", "all 3 together", "in at_least 0.5"),
+    "signs of keys": ("x=1, y=2", '{"a": "b"}', "c=3", "d, e"),
+}
+
+
+@pytest.mark.parametrize("names", NAMES.values(), ids=NAMES)
+@pytest.mark.parametrize("together", [{}, {"together": True}])
+def test_any_names_make_right_sentences(names, together, tmp_path):
+    """From claim_checks.csv, which pandas reads."""
+    group, other, *labels = names
+    check = LOWER | {"groups": [group], "than": [other], "every": ["workspace"]} | together
+    runs = table({group: sample("a"), other: sample("b", 1)}, workspace="a, b=c")
+    _, checks = judge({"checks": [check]}, runs)
+    checks.to_csv(tmp_path / "claim_checks.csv", index=False)
+    row = pd.read_csv(tmp_path / "claim_checks.csv").iloc[0]
+    assert [row["group"], row["relation"], row["other"]] == [group, "lower than", other]
+    assert json.loads(row["place"]) == {"workspace": "a, b=c"}
+    row = row.astype(object).where(row.notna(), None)
+    said = sentences.why(row, kinds.check_of(check), dict(zip(names, labels)), False)
+    assert f", {labels[0]} is 1 m lower than {labels[1]} (95 % interval" in said
+    assert said.startswith("Workspace a, b=c: in final value of the planner's objective, ")
+    title = "all 1 together" if together else f"{labels[0]} lower than {labels[1]}"
+    named = sentences.title(row, kinds.check_of(check), dict(zip(names, labels)))
+    assert named == f"{title}, workspace a, b=c"
+
+
+def test_a_sentence_follows_from_a_row_alone(tmp_path):
+    _, checks = judge({"checks": [LOWER]}, APART)
+    checks.to_csv(tmp_path / "claim_checks.csv", index=False)
+    row = pd.read_csv(tmp_path / "claim_checks.csv").iloc[0]
+    assert (
+        f"{row['group']} is {abs(row['effect']):g} {row['unit']} {row['relation']} {row['other']}"
+        == ("a is 1 m lower than b")
+    )
+    assert row["low95"] < row["effect"] < row["high95"]
+    assert (row["metric"], row["n"], row["mark"]) == ("objective", UNITS, "+")
 
 
 def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
@@ -236,7 +282,8 @@ def test_lower_against_scipy():
     assert row["effect"] == pytest.approx(-1)
     assert row["low95"] < -1 < row["high95"] < 0
     assert (row["effect_size_name"], row["effect_size"]) == ("A12", np.mean(a[:, None] < b))
-    assert (row["n"], row["unit"], row["comparison"]) == (UNITS, "m", "a lower than b")
+    assert (row["n"], row["unit"]) == (UNITS, "m")
+    assert compared(pd.DataFrame([row])) == ["a lower than b"]
 
 
 def test_paired_differences_against_scipy():
@@ -501,21 +548,21 @@ def test_words_for_where_a_claim_holds(holding, words):
         )
         for rival, workspace in itertools.product(["prm", "ga"], ["small", "large"])
     ]
-    assert verdicts.where_it_holds(found, {"prm": "roadmap"}) == words
+    assert sentences.told_apart(found, {"prm": "roadmap"}) == words
 
 
 def test_words_for_columns_and_for_what_stays_mixed():
     found = [
         Entry({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)
     ]
-    assert verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
+    assert sentences.told_apart(found, {}) == "at obstacles other than 5"
     mixed = [
         Entry({"method": name}, mark)
         for name, marks in (("a", "++"), ("b", "+-"))
         for mark in marks
     ]
-    assert verdicts.where_it_holds(mixed, {}) == "for a; for b in 1 of 2"
-    assert verdicts.where_it_holds([Entry({}, "+"), Entry({"against": 1}, "-")], {}) == "in 1 of 2"
+    assert sentences.told_apart(mixed, {}) == "for a; for b in 1 of 2"
+    assert sentences.told_apart([Entry({}, "+"), Entry({"against": 1}, "-")], {}) == "in 1 of 2"
 
 
 def test_words_for_many_rivals_name_the_exceptions():
@@ -524,11 +571,11 @@ def test_words_for_many_rivals_name_the_exceptions():
         for name in ("gauss", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal")
     ]
     labels = {"circle": "Circle", "sinusoidal": "Sinusoidal"}
-    assert verdicts.where_it_holds(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
+    assert sentences.told_apart(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
     unknown = [each._replace(mark="?") if each.mark == "-" else each for each in maps]
-    assert verdicts.where_it_holds(unknown, labels).endswith("; undecided in 2 of 7")
+    assert sentences.told_apart(unknown, labels).endswith("; undecided in 2 of 7")
     contrary = [each._replace(mark="0" if each.mark == "+" else "-") for each in maps]
-    assert verdicts.where_it_holds(contrary, labels) == "the contrary against Circle and Sinusoidal"
+    assert sentences.told_apart(contrary, labels) == "the contrary against Circle and Sinusoidal"
 
 
 def test_precise_and_nothing_there_is_no_effect():
@@ -623,9 +670,9 @@ def test_factors_across_and_where():
     assert judged(check, runs)["holds"] == "2 of 2"
     assert judged(check | {"where": {"method": ["other"]}}, runs)["holds"] == "0 of 2"
     every = judge({"checks": [TREND | {"every": ["method"]}]}, runs)[1]
-    assert dict(zip(every["condition"], every["mark"])) == {
-        "method=plain": "+",
-        "method=other": "-",
+    assert dict(zip(every["place"], every["mark"])) == {
+        '{"method": "plain"}': "+",
+        '{"method": "other"}': "-",
     }
 
 
@@ -641,9 +688,9 @@ def test_rest_is_what_the_artefact_shows_and_the_check_does_not_name():
         found = judge(
             {"checks": [check], "artefact": next(iter(known))}, table(TIERS), artefacts=known
         )[1]
-        assert sorted(found["comparison"]) == ["a lower than b", "a lower than d"]
+        assert sorted(compared(found)) == ["a lower than b", "a lower than d"]
     everything = judge({"checks": [check]}, table(TIERS))[1]
-    assert everything["comparison"].to_list() == [
+    assert compared(everything) == [
         "a lower than b",
         "a lower than c",
         "a lower than d",
@@ -673,7 +720,7 @@ def test_variants_take_the_place_of_what_the_checks_name():
         "contradicted",
         "undecided",
     ]
-    assert set(details["comparison"]) == {"a lower than b", "d lower than b"}
+    assert set(compared(details)) == {"a lower than b", "d lower than b"}
     metric = {"checks": [LOWER], "variants": {"metric": ["objective", "evaluations"]}}
     runs = runs[runs["workspace"] == "grid"].assign(evaluations=lambda each: -each["objective"])
     assert judge(metric, runs)[0]["verdict"].to_list() == ["supported", "contradicted"]
@@ -690,7 +737,7 @@ def test_rest_is_the_same_in_every_variant():
     claim = {"checks": [LOWER | {"than": ["rest"]}], "variants": {"method": ["a", "d"]}}
     artefacts = {"table1": [{"experiment": "tried", "where": {"method": ["a", "b"]}}]}
     found = judge(claim | {"artefact": "table1"}, table(TIERS), artefacts=artefacts)[1]
-    assert found["comparison"].to_list() == ["a lower than b", "d lower than b"]
+    assert compared(found) == ["a lower than b", "d lower than b"]
 
 
 def test_failures():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.figures import style
+from bezierplan.analysis import naming
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ def extremes(name: str, frame: pd.DataFrame, by: str, column: str, labels: dict[
     if values.min() == values.max():
         return f"{name} {_printed(values.min())} of all"
     ends = [
-        " and ".join(style.printed(value, by, labels) for value in finite[by][values == end])
+        " and ".join(naming.printed(value, by, labels) for value in finite[by][values == end])
         + f" ({_printed(end)})"
         for end in (values.min(), values.max())
     ]
@@ -51,6 +51,6 @@ def mostly(name: str, frame: pd.DataFrame, x: str, hue: str, labels: dict[str, s
     for end, best in (("lowest", compared.idxmin(axis=1)), ("highest", compared.idxmax(axis=1))):
         # The first of several in the order of the columns, whatever the order of the rows.
         counts = best.value_counts().reindex(compared.columns, fill_value=0)
-        winner = style.printed(counts.idxmax(), hue, labels)
+        winner = naming.printed(counts.idxmax(), hue, labels)
         clauses.append(f"{end} {name} in {counts.max()} of {len(compared)}: {winner}")
     return ", ".join(clauses)

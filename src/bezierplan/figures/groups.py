@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.figures import style
 from bezierplan.workspaces.seeds import generator
 
@@ -144,7 +144,7 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     """
     unit = unit_of(column, scene)
     beside = "" if unit in ("-", "s", "") else f" ({unit})"
-    return f"{statistic} {style.column_name(column, scene.labels)}{beside}".lstrip()
+    return f"{statistic} {naming.column_name(column, scene.labels)}{beside}".lstrip()
 
 
 def unit_of(column: str, scene: Any) -> str:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bezierplan.analysis import naming
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
@@ -216,7 +218,7 @@ def groups(
         (
             value,
             frame[frame[column] == value],
-            look | {"label": printed(value, column, scene.labels)},
+            look | {"label": naming.printed(value, column, scene.labels)},
         )
         for value, look in zip(values, lines(values, scene.looks))
     ]
@@ -279,15 +281,3 @@ def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
     listed = first if isinstance(first, list) else []
     present = values.dropna().unique().tolist()
     return [value for value in listed if value in present] + sorted(set(present) - set(listed))
-
-
-def printed(value: Any, column: str, labels: dict[str, str]) -> str:
-    """How a value of a column is printed: as its label, or a number after the column's label."""
-    name = value if isinstance(value, str) else f"{value:g}"
-    without = name if isinstance(value, str) else f"{column_name(column, labels)} = {name}"
-    return labels.get(name, without)
-
-
-def column_name(column: str, labels: dict[str, str]) -> str:
-    """How a column or a metric is printed."""
-    return labels.get(column, column.replace("_", " "))

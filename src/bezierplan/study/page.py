@@ -107,8 +107,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
         methods={
             name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
         },
-        checks={claim.id: claim.checks for claim in study.claims},
-        holds={claim.id: claim.holds for claim in study.claims},
+        claims={claim.id: claim for claim in study.claims},
         repeats={each: _repeats(study, each) for each in (scale, "extended")},
         tables={
             name: TableView(

@@ -5,6 +5,7 @@ the same cells.
 import itertools
 from collections.abc import Iterator
 from pathlib import PurePath
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -24,6 +25,11 @@ from bezierplan.schema.model import one_or_list
 REST = "rest"
 # Columns with one value per unit of a comparison; several values would silently mix their runs.
 _FACTORS = ["experiment", "condition", "method"]
+
+
+def is_timed(check: Check) -> bool:
+    """Whether a check is of seconds."""
+    return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
 
 
 def unit_of(metric: str, experiments: list[str], material: Material) -> str:
@@ -124,7 +130,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
             printed_rows[cell] = [
                 rows_of_cell(part, printed_tables, material.variant_of) for part in own
             ]
-        for name, cells in compared:
+        for terms, cells in compared:
             strata = {
                 key: effects.event(check, table.reindex(columns=cells).to_numpy())
                 for key, table in unit_tables.items()
@@ -134,8 +140,8 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
             )
             comparison_list.append(
                 Comparison(
-                    place=condition,
-                    name=name,
+                    terms=terms,
+                    place=tuple((key, _known(rows[key].iloc[0])) for key in every),
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
@@ -143,7 +149,6 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     boolean=_is_boolean(check, material),
                     paired=paired,
                     note=_note(check, rows, column, cells),
-                    factors=tuple((key, rows[key].iloc[0]) for key in every),
                 )
             )
     return comparison_list
@@ -239,6 +244,11 @@ def _refuse_mixtures(check: OfRuns, claim: Claim, runs: pd.DataFrame, keys: list
         )
         what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
+
+
+def _known(value: Any) -> Any:
+    """A value of a place; text where there is none, for that equals itself."""
+    return "nan" if value != value else value
 
 
 def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:

@@ -11,7 +11,7 @@ resampling says nothing about events that never happened.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,8 +40,24 @@ _EVENTS: dict[str, Callable] = {
 }
 
 
+class Terms(NamedTuple):
+    """What a comparison compares: a group in relation to another. Of a share the event, and the
+    share that is needed; of a trend the column along which, and the claimed side; of a function its
+    name. Empty where there is nothing.
+    """
+
+    group: Any = ""
+    relation: str = ""
+    other: Any = ""
+
+    @property
+    def name(self) -> str:
+        """By which random draws are seeded."""
+        return " ".join(str(part) for part in self if part != "")
+
+
 class Comparison(NamedTuple):
-    """place: the combination of `every`, as text; name: the comparison in words. cells: groups, or
+    """terms: what is compared. place: the values of `every` there, by column. cells: groups, or
     values of x in rising order (k).
 
     strata: one table (units, k) for each condition that is averaged over (mostly one), by name; NaN
@@ -49,11 +65,11 @@ class Comparison(NamedTuple):
     values say whether the event happened. printed: the published numbers of the cells (k,), NaN
     unless all are printed. paper_units: number of units in the paper. boolean: whether the metric
     is true or false. paired: whether equal units of the cells belong together. note: for the reader
-    of the row. factors: the values of `every` at the place, by column.
+    of the row.
     """
 
-    place: str
-    name: str
+    terms: Terms
+    place: tuple[tuple[str, Any], ...]
     cells: tuple
     strata: dict[str, np.ndarray]
     printed: np.ndarray
@@ -61,7 +77,11 @@ class Comparison(NamedTuple):
     boolean: bool
     paired: bool
     note: str = ""
-    factors: tuple[tuple[str, object], ...] = ()
+
+    @property
+    def seed(self) -> str:
+        """The name of its place, by which random draws are seeded."""
+        return ", ".join(f"{column}={value}" for column, value in self.place)
 
     @property
     def counted(self) -> str:
@@ -97,6 +117,26 @@ class Finding(NamedTuple):
     mark: str = ""
     reason: str = ""
     chance_known: bool = False
+
+
+class MarkedComparison(NamedTuple):
+    """One comparison of terms at a place; `comparison` is None if no runs are compared. primary:
+    False for a secondary check.
+
+    parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
+    """
+
+    number: int
+    check: Any
+    primary: bool
+    place: tuple[tuple[str, Any], ...]
+    terms: Terms
+    comparison: Comparison | None
+    finding: Finding
+    mark: str = "?"
+    mark_family: str = ""
+    p_family: float = math.nan
+    parts: tuple[Comparison, ...] = ()
 
 
 # What a claim says about point values. All take (..., k) numbers of cells, so that they work for
@@ -149,12 +189,6 @@ def on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.nda
 
 # Two cells: a group and the one that it is compared with.
 BETWEEN_GROUPS = Effect(_group_less_other, _gradient_of_groups, on_claimed_side)
-
-
-def pairs_in_words(pairs: Iterable[Sequence], relation: str) -> Iterator[tuple[str, list]]:
-    """Pairs of groups, each with its name in words."""
-    for pair in pairs:
-        yield f"{pair[0]} {relation} {pair[1]}", list(pair)
 
 
 def effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
@@ -245,7 +279,7 @@ def drawn_points(
                 len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
             )
             own = "" if comparison.paired else f"/{comparison.cells[number]}"
-            rng = generator(f"{name}/{comparison.place}/{stratum_name}{own}")
+            rng = generator(f"{name}/{comparison.seed}/{stratum_name}{own}")
             total[:, number] += statistics.resampled(statistic, values, drawn, rng)
     return total / len(comparison.strata)
 

@@ -39,44 +39,22 @@ between planners of different kinds, whose evaluations are different things.
 claim_checks.csv, one row per comparison.
 """
 
+import json
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics
-from bezierplan.analysis.claims import comparisons, effects, verdicts
+from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
 from bezierplan.analysis.claims.check import Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
-from bezierplan.analysis.claims.effects import Comparison, Finding
+from bezierplan.analysis.claims.effects import Comparison, Finding, MarkedComparison, Terms
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.analysis.claims.variants import in_variant, variants, with_work
+from bezierplan.analysis.claims.variants import in_variant, name_of, variants, with_work
 from bezierplan.analysis.results import Results
-from bezierplan.schema.model import one_or_list
-
-
-class _Judgement(NamedTuple):
-    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary
-    check.
-
-    parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
-    """
-
-    number: int
-    check: Any
-    primary: bool
-    condition: str
-    name: str
-    comparison: Comparison | None
-    finding: Finding
-    mark: str = "?"
-    mark_family: str = ""
-    p_family: float = math.nan
-    parts: tuple[Comparison, ...] = ()
 
 
 def judge(
@@ -108,7 +86,8 @@ def judge(
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
     claims = pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"})
-    return claims, pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    checks = pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    return claims, checks.astype({"together": "Int64"})
 
 
 # From comparisons to a verdict.
@@ -118,9 +97,7 @@ def _judge_variant(
     claim: Claim, first: dict, assignment: dict, study: str, material: Material
 ) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
-    variant = ", ".join(
-        f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items()
-    )
+    variant = name_of(assignment)
     holds = claim.holds
     name = f"{study}/{claim.id}/{variant}"
     # `rest` means the same as in the primary variant, so it is filled in before values are
@@ -136,7 +113,9 @@ def _judge_variant(
         "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
         "timed": any(
-            _is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1
+            comparisons.is_timed(check)
+            for check in checks
+            if check.primary and len(with_work(check)) == 1
         ),
     }
     judgements, obstacle = [], ""
@@ -148,7 +127,9 @@ def _judge_variant(
         except Untestable as reason:
             if not check.primary:
                 judgements.append(
-                    _Judgement(number, check, False, "", "", None, Finding(reason=str(reason)))
+                    MarkedComparison(
+                        number, check, False, (), Terms(), None, Finding(reason=str(reason))
+                    )
                 )
             else:
                 obstacle = obstacle or str(reason)
@@ -174,17 +155,20 @@ def _judge_variant(
     ):
         verdict = "depends"
     everywhere = verdict == "supported" and holds != "any"
+    unit = _unit(deciding[0].check, material)
     reasons = [
-        _by_own_criterion(claim, verdict),
-        _less_than(deciding, verdict, material),
+        sentences.by_own_criterion(claim, verdict),
+        sentences.less_than(deciding, verdict, unit),
         _reason(decisive),
-        _disagreement(judgements),
+        sentences.disagreement(judgements),
         claim.note or "",
     ]
     summary = finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": "" if everywhere else _where_it_holds(judgements, material.labels),
+        "where_it_holds": ""
+        if everywhere
+        else sentences.where_it_holds(judgements, material.labels),
         "published": _published(deciding),
         "low95": finding.low,
         "high95": finding.high,
@@ -195,80 +179,44 @@ def _judge_variant(
     return content | summary, rows
 
 
-def _by_own_criterion(claim: Claim, verdict: str) -> str:
-    """The first words of the reason for a claim that holds, or does not, by a threshold of ours,
-    where the paper gives no number.
-    """
-    if claim.criterion is None or verdict == "undecided":
-        return ""
-    word = {"supported": "holds", "partly": "holds in part"}.get(verdict, "fails")
-    return f"{word} by our criterion alone"
-
-
-def _less_than(deciding: list[_Judgement], verdict: str, material: Material) -> str:
-    """Of a claim without effect: below what size all differences that are shown to be negligible
-    lie; empty for any other.
-    """
-    within = [each for each in deciding if each.mark_family == "0"]
-    if verdict != "no effect" or not within:
-        return ""
-    most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
-    relative = within[0].check.relative
-    size = (
-        f"{100 * most:.2g} %"
-        if relative
-        else f"{most:.2g} {_unit(within[0].check, material)}".removesuffix(" -")
-    )
-    where = (
-        "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
-    )
-    return f"{where}differs by less than {size}"
-
-
 def _findings(
     number: int, check: Check, claim: Claim, name: str, material: Material
-) -> list[_Judgement]:
+) -> list[MarkedComparison]:
     """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = check.primary, kind_of(check)
+    judged: list[tuple[Terms, Comparison | None, Finding]]
     if not isinstance(check, OfRuns):
-        judged = kind.findings(check, claim, material)
-        return [
-            _Judgement(
-                *(number, check, primary, condition, words, None),
-                verdicts.among(finding, check, material.among),
-            )
-            for condition, words, finding in judged
+        judged = [
+            (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
         ]
-    if _is_timed(check) and not check.relative:
+    elif comparisons.is_timed(check) and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
-    judged = [
-        _Judgement(
-            *(number, check, primary, comparison.place, comparison.name, comparison),
-            verdicts.among(
-                kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
-                *(check, material.among),
-            ),
-        )
-        for comparison in comparisons.comparisons(check, claim, material)
-    ]
-    return _together(judged) if check.together else judged
+    else:
+        judged = [
+            (each.terms, each, kind.find(check, each, f"{name}/{number}/{each.terms.name}"))
+            for each in comparisons.comparisons(check, claim, material)
+        ]
+    found = []
+    for terms, compared, finding in judged:
+        place = compared.place if compared else ()
+        finding = verdicts.among(finding, check, material.among)
+        found.append(MarkedComparison(number, check, primary, place, terms, compared, finding))
+    return _together(found) if check.together else found
 
 
-def _together(findings: list[_Judgement]) -> list[_Judgement]:
+def _together(findings: list[MarkedComparison]) -> list[MarkedComparison]:
     """The comparisons of each place as one, followed by themselves as secondary ones."""
-    places = dict.fromkeys(each.condition for each in findings)
+    places = dict.fromkeys(each.place for each in findings)
     judged = []
-    for own in ([each for each in findings if each.condition == place] for place in places):
+    for own in ([each for each in findings if each.place == place] for place in places):
         finding, decisive = verdicts.conjunction([each.finding for each in own])
         parts = tuple(each.comparison for each in own)
-        whole = own[decisive]._replace(
-            name=f"all {len(own)} together", finding=finding, parts=parts
-        )
+        whole = own[decisive]._replace(finding=finding, parts=parts)
         judged += [whole, *(each._replace(primary=False) for each in own)]
     return judged
 
 
-def _marked(findings: list[_Judgement]) -> list[_Judgement]:
+def _marked(findings: list[MarkedComparison]) -> list[MarkedComparison]:
     """The comparisons with their marks, the primary ones also with their marks in the family."""
     tested = [
         number
@@ -292,66 +240,7 @@ def _marked(findings: list[_Judgement]) -> list[_Judgement]:
     return marked
 
 
-def _in_words(entry: _Judgement, deciding: list[_Judgement]) -> verdicts.Entry:
-    """A comparison with the factors that distinguish it from the others of its claim."""
-    factors: dict[str, Any] = {}
-    if entry.comparison is not None:
-        if entry.check.against and not entry.parts:
-            group, other = (_group_in_words(entry.check, cell) for cell in entry.comparison.cells)
-            factors |= {"against": other, "group": group}
-        factors |= dict(entry.comparison.factors)
-    elif entry.condition:
-        factors["in"] = entry.condition
-    if len({_what(other.check) for other in deciding}) > 1:
-        factors["what"] = _what(entry.check)
-    return verdicts.Entry(factors, entry.mark_family)
-
-
-def _what(check: Check) -> str:
-    """What a check compares, in words."""
-    statistic = check.statistic if "statistic" in check.model_fields_set else ""
-    return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
-
-
-def _where_it_holds(findings: list[_Judgement], labels: Mapping[str, str]) -> str:
-    """`verdicts.where_it_holds` of the comparisons that decide; if all or none of these hold, which
-    they may do because of the closest of several that are taken together, of these one by one.
-    """
-    deciding = [each for each in findings if each.primary]
-    words = verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], labels)
-    single = [
-        each._replace(mark_family=each.mark)
-        for each in findings
-        if not each.primary and any(each.check is whole.check for whole in deciding if whole.parts)
-    ]
-    if words or not any(each.mark == "+" for each in single):
-        return words
-    words = verdicts.where_it_holds([_in_words(each, single) for each in single], labels)
-    return f"one by one {words}" if words else ""
-
-
-def _group_in_words(check: Check, group: Any) -> Any:
-    """A group's name; for a number, with its column."""
-    return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
-
-
-def _disagreement(findings: list[_Judgement]) -> str:
-    """A note where seconds disagree with the counted work that is judged in their place."""
-    seconds = {(each.condition, each.name): each.mark for each in findings if _is_timed(each.check)}
-    pairs = [
-        (each.mark, seconds[each.condition, each.name])
-        for each in findings
-        if each.primary and (each.condition, each.name) in seconds and each.check._printed_metric
-    ]
-    differing = sum(mark != other for mark, other in pairs)
-    return (
-        f"judged on counted work; seconds disagree in {differing} of {len(pairs)}"
-        if differing
-        else ""
-    )
-
-
-def _shown(deciding: list[_Judgement], holds: str) -> _Judgement:
+def _shown(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
     """The decisive comparison.
 
     If all have to hold, the worst - by effect (of the first check that has one), otherwise that
@@ -359,7 +248,7 @@ def _shown(deciding: list[_Judgement], holds: str) -> _Judgement:
     smallest p, among those with a + if there are any.
     """
 
-    def p(each: _Judgement) -> float:
+    def p(each: MarkedComparison) -> float:
         return (
             each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
         )
@@ -381,7 +270,7 @@ def _shown(deciding: list[_Judgement], holds: str) -> _Judgement:
 # The printed numbers, and experiments of the paper's size.
 
 
-def _printed(entry: _Judgement) -> tuple[float, bool | None]:
+def _printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are
     not printed.
     """
@@ -397,7 +286,7 @@ def _printed(entry: _Judgement) -> tuple[float, bool | None]:
     ), held
 
 
-def _published(deciding: list[_Judgement]) -> str:
+def _published(deciding: list[MarkedComparison]) -> str:
     held = [held for _, held in map(_printed, deciding) if held is not None]
     return f"{sum(held)} of {len(held)}" if held else "not printed"
 
@@ -405,21 +294,17 @@ def _published(deciding: list[_Judgement]) -> str:
 # Rows.
 
 
-def _is_timed(check: Check) -> bool:
-    return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
-
-
-def _reason(each: _Judgement) -> str:
+def _reason(each: MarkedComparison) -> str:
     """Notes for the reader of a row."""
     unexplained = "too few units to tell" if each.mark == "?" else ""
     note = each.comparison.note if each.comparison else ""
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
 
 
-def _check_row(entry: _Judgement, material: Material) -> dict:
+def _check_row(entry: MarkedComparison, material: Material) -> dict:
     """A row of claim_checks.csv, whose columns leave out the rest of the finding."""
     check, finding = entry.check, entry.finding
-    effect_published, held = _printed(entry)
+    effect_published, agrees = _printed(entry)
     return finding._asdict() | {
         "check": entry.number,
         "primary": entry.primary,
@@ -428,8 +313,11 @@ def _check_row(entry: _Judgement, material: Material) -> dict:
         "metric": check.metric,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
-        "condition": entry.condition,
-        "comparison": entry.name,
+        **entry.terms._asdict(),
+        "together": len(entry.parts) or None,
+        "place": json.dumps(
+            {key: getattr(at, "item", lambda at=at: at)() for key, at in entry.place}
+        ),
         "mark": entry.mark,
         "mark_family": entry.mark_family,
         "counted": entry.comparison.counted if entry.comparison else "",
@@ -437,8 +325,8 @@ def _check_row(entry: _Judgement, material: Material) -> dict:
         "high95": finding.high,
         "p_family": entry.p_family,
         "effect_published": effect_published,
-        "published": {True: "holds", False: "fails", None: "not printed"}[held],
-        "timed": _is_timed(check),
+        "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
+        "timed": comparisons.is_timed(check),
         "reason": _reason(entry),
     }
 

@@ -17,6 +17,13 @@ def variants(claim: Claim) -> list[dict[str, Any]]:
     ]
 
 
+def name_of(assignment: dict[str, Any]) -> str:
+    """The name of an assignment in claims.csv, by which random draws are seeded."""
+    return ", ".join(
+        f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items()
+    )
+
+
 def in_variant(
     checks: list[Check], first: dict[str, Any], assignment: dict[str, Any]
 ) -> list[Check]:

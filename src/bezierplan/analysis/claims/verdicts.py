@@ -27,8 +27,7 @@ of a claim's primary checks in one variant. The procedure is a standard one at e
 """
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -38,8 +37,6 @@ from bezierplan.analysis.claims.effects import ALPHA, SIDES, Finding
 # Least share of all comparisons that must be decided; if no decided one speaks against the claim,
 # the least share that must hold.
 DECIDED, HOLDING = 0.5, 0.75
-# Up to this many names are listed, otherwise only counted.
-MOST_LISTED = 4
 
 
 def family(p: np.ndarray) -> np.ndarray:
@@ -147,89 +144,3 @@ def _partly(marks: Sequence[str]) -> str:
     # some do not.
     least = HOLDING if set(decided) == {"+"} else DECIDED
     return "partly" if len(decided) >= least * len(marks) else "undecided"
-
-
-# Words.
-
-
-class Entry(NamedTuple):
-    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
-    columns), and its mark.
-    """
-
-    factors: Mapping[str, Any]
-    mark: str
-
-
-def where_it_holds(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
-    """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
-
-    They are split by the factor that best separates those that hold from those that do not; of a
-    value with both, it says how many hold. If none holds, the words are about the contrary.
-    labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
-    """
-    sought = "+" if any(each.mark == "+" for each in comparisons) else "-"
-    number = sum(each.mark == sought for each in comparisons)
-    if number in (0, len(comparisons)):
-        return ""
-    factor = _best_factor(comparisons, sought)
-    marks: dict[Any, list[bool]] = {}
-    for each in comparisons if factor else []:
-        marks.setdefault(each.factors[factor], []).append(each.mark == sought)
-    full = [value for value, own in marks.items() if all(own)]
-    words = [_chosen(factor, full, list(marks), labels)] if full else []
-    words += [
-        f"{_before(factor)}{_name(value, labels)} in {sum(own)} of {len(own)}"
-        for value, own in marks.items()
-        if any(own) and not all(own)
-    ]
-    unknown = sum(each.mark == "?" for each in comparisons)
-    words += [] if factor else [f"in {number} of {len(comparisons)}"]
-    words += [f"undecided in {unknown} of {len(comparisons)}"] if unknown else []
-    return ("" if sought == "+" else "the contrary ") + "; ".join(words)
-
-
-def _best_factor(comparisons: Sequence[Entry], sought: str) -> str | None:
-    """The factor of all comparisons with the least mixed values (Gini impurity), the first among
-    equals; None if none has two values.
-    """
-    best, least = None, np.inf
-    for factor in [
-        factor
-        for factor in comparisons[0].factors
-        if all(factor in each.factors for each in comparisons)
-    ]:
-        parts: dict[Any, list[bool]] = {}
-        for each in comparisons:
-            parts.setdefault(each.factors[factor], []).append(each.mark == sought)
-        impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
-        if len(parts) > 1 and impurity < least - 1e-9:
-            best, least = factor, impurity
-    return best
-
-
-def _chosen(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
-    """Words for a subset of a factor's values."""
-    others = [value for value in every if value not in subset]
-    few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
-    if few and _before(factor).startswith("at "):
-        return f"{_before(factor)}other than {_joined(others, labels)}"
-    if few:
-        return f"{_before(factor)}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
-    return f"{_before(factor)}{_joined(subset, labels)}"
-
-
-def _joined(values: list, labels: Mapping[str, str]) -> str:
-    names = [_name(value, labels) for value in values]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-def _name(value: Any, labels: Mapping[str, str]) -> str:
-    return labels.get(str(value), f"{value:g}" if isinstance(value, float) else str(value))
-
-
-def _before(factor: str) -> str:
-    """The word before the values of a factor."""
-    words = {"against": "against", "group": "for", "method": "for"}
-    places = ("what", "workspace", "problem", "experiment", "in")
-    return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

@@ -15,9 +15,9 @@ from typing import Any
 import bezierplan
 from bezierplan import places
 from bezierplan.analysis import baseline_comparison, headline, wholes, words
+from bezierplan.analysis.claims.sentences import meaning
 from bezierplan.figures.page import HERE, OUTCOME, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
-from bezierplan.figures.page.why import meaning
 
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {

@@ -4,7 +4,7 @@ plain values, and files.
 
 from typing import Any, NamedTuple
 
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Table
 
 
@@ -67,10 +67,8 @@ class StudyView(NamedTuple):
     labels: dict[str, str]
     """Name -> how it is printed."""
     methods: dict[str, MethodView]
-    checks: dict[str, list[Check]]
-    """Those of each claim."""
-    holds: dict[str, str]
-    """How many comparisons of each claim have to hold: `all`, `any` or `together`."""
+    claims: dict[str, Claim]
+    """By id."""
     repeats: dict[str, list[int]]
     """Scale -> the least and the largest number of runs of a method under a condition; empty for a
     study without experiments.

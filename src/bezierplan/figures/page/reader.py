@@ -11,10 +11,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import comparison, wholes
+from bezierplan.analysis import comparison, naming, wholes
+from bezierplan.analysis.claims import sentences, variants
 from bezierplan.analysis.table_kinds import Pivot
-from bezierplan.figures import style
-from bezierplan.figures.page import why
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView
 from bezierplan.running.inputs import tree
@@ -236,7 +235,7 @@ def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:
     """The value of a key column as printed; a number is named."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
-    return style.printed(value, column, labels)
+    return naming.printed(value, column, labels)
 
 
 def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
@@ -247,7 +246,7 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
     for value in spec.values:
         if value.metric == metric and beside & set(value.statistics):
             return value.label + (f": {statistic}" if len(value.statistics) > 1 else "")
-    return f"{style.column_name(metric, labels)}: {statistic}"
+    return f"{naming.column_name(metric, labels)}: {statistic}"
 
 
 def _claims(
@@ -268,25 +267,26 @@ def _claims(
         every = records(rows)
         claim = next(row for row in every if row["primary"])
         comparisons = compared.get((claim["id"], claim["variant"]), [])
-        checks = content.checks.get(claim["id"], [])
+        described = content.claims.get(claim["id"])
+        checks = described.checks if described else []
+        names = {
+            variants.name_of(values): sentences.places(values, content.labels)
+            for values in (variants.variants(described) if described else [])
+        }
         for each in comparisons:
             check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
-            each["reference"] = why.reference(check) if check else 0.0
-            each["name"] = ", ".join(
-                labelled(words, content.labels)
-                for words in (each["comparison"], each["condition"])
-                if words
-            )
+            each["reference"] = sentences.reference(check) if check else 0.0
+            each["name"] = sentences.title(each, check, content.labels)
         claims.append(
             claim
             | {
                 "address": address(study, claim["id"]),
-                "rule": why.rule(content.holds.get(claim["id"]), claim["verdict"], claim["holds"]),
+                "rule": sentences.rule(described, claim["verdict"], claim["holds"]),
                 "why": _why(claim, comparisons, checks, content.labels),
                 "comparisons": comparisons,
-                "variant": labelled(claim["variant"] or "", content.labels),
+                "variant": names.get(claim["variant"] or "", ""),
                 "interpretations": [
-                    row | {"variant": labelled(row["variant"], content.labels)}
+                    row | {"variant": names.get(row["variant"], row["variant"])}
                     for row in every
                     if not row["primary"]
                 ],
@@ -302,44 +302,13 @@ def _claims(
 
 
 def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]) -> str:
-    """The sentence that says why (`why`), from the decisive comparison; empty without one, or for a
-    check that the study has no more. Of comparisons taken together, one of them decided.
+    """The sentence that says why, from the decisive comparison; empty without one, or for a check
+    that the study has no more.
     """
     row = next((each for each in comparisons if each["decisive"]), None)
     if row is None or row["check"] > len(checks):
         return ""
-    alike = ("check", "condition", "effect", "counted", "low95")
-    single = next(
-        (
-            each
-            for each in comparisons
-            if " together" in row["comparison"]
-            and " together" not in each["comparison"]
-            and all(each[name] == row[name] for name in alike)
-        ),
-        row,
-    )
-    return why.why(
-        row,
-        checks[row["check"] - 1],
-        labelled(single["comparison"] or "", labels),
-        labelled(row["condition"] or "", labels),
-        bool(claim["own_criterion"]),
-    )
-
-
-def labelled(words: str, labels: dict[str, str]) -> str:
-    """Words such as `mga lower than prm` or `problem=0_15, obstacles=5` with names as they are
-    printed.
-    """
-    parts = []
-    for part in words.split(", "):
-        key, equals, value = part.partition("=")
-        if equals:
-            parts.append(labels.get(value) or f"{style.column_name(key, labels)} {value}")
-        else:
-            parts.append(" ".join(style.column_name(word, labels) for word in part.split(" ")))
-    return ", ".join(parts)
+    return sentences.why(row, checks[row["check"] - 1], labels, bool(claim["own_criterion"]))
 
 
 def _assumption(study: str, row: Row) -> Row:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field
 
+from bezierplan.analysis import naming
 from bezierplan.figures import glance, style
 from bezierplan.figures.groups import axis_label, published, runs_note, summary, unit_of
 from bezierplan.figures.panels import MetricPanel, Note
@@ -101,7 +102,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_box_aspect(_HEIGHT)
     axes.set_ylabel(axis_label(options.metric, scene, options.statistic))
     style.measure(axes.yaxis, options.scale, unit_of(options.metric, scene))
-    metric = f"{options.statistic} {style.column_name(options.metric, labels)}"
+    metric = f"{options.statistic} {naming.column_name(options.metric, labels)}"
     return Note(
         "",
         runs_note(frame, options.statistic, "bar"),

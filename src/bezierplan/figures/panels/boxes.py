@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import Field
 
+from bezierplan.analysis import naming
+from bezierplan.analysis.naming import amount
 from bezierplan.figures import glance, style
-from bezierplan.figures.amounts import amount
 from bezierplan.figures.groups import (
     LIMITS,
     axis_label,
@@ -121,7 +122,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.limit is not None:
         label = f"published limit: {amount(format(options.limit, 'g'), scene.unit)}"
         axes.axhline(options.limit, zorder=1.5, label=label, **style.PUBLISHED)
-    names = [style.printed(group, by, scene.labels) for group in order]
+    names = [naming.printed(group, by, scene.labels) for group in order]
     style.name_places(axes, names, axis_label(by, scene))
     axes.set_ylabel(axis_label(metric, scene))
     style.measure(axes.yaxis, options.scale, unit_of(metric, scene))

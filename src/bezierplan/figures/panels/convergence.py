@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis import statistics
+from bezierplan.analysis import naming, statistics
 from bezierplan.figures import glance, style
 from bezierplan.figures.groups import (
     LIMITS,
@@ -164,7 +164,7 @@ def _histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel(style.column_name("generation", scene.labels))
+    axes.set_xlabel(naming.column_name("generation", scene.labels))
     axes.grid(visible=True)
     for name, look in LIMITS.items():
         if options.context and np.isfinite(frame[name].iloc[0]):

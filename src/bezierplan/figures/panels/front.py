@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis import statistics
+from bezierplan.analysis import naming, statistics
 from bezierplan.figures import style
 from bezierplan.figures.groups import axis_label, grouped, measured, values
 from bezierplan.figures.panels import Note, RunsPanel
@@ -86,7 +86,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlabel(axis_label(options.x, scene))
     axes.set_ylabel(axis_label(options.y, scene))
     axes.grid(visible=True)
-    best = [style.printed(name, "method", scene.labels) for name in frame["method"][frame["front"]]]
+    best = [
+        naming.printed(name, "method", scene.labels) for name in frame["method"][frame["front"]]
+    ]
     return Note(
         "",
         "median and 95 % interval; beside each mark the share of paths that are free",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from bezierplan.analysis import naming
 from bezierplan.figures import glance, style
 from bezierplan.figures.groups import (
     axis_label,
@@ -170,7 +171,7 @@ def _of_table(look: dict, points: int) -> dict:
 
 def _glance(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
     """Which line is lowest and highest at most places, or where the only line is."""
-    name = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
+    name = f"{options.statistic} {naming.column_name(options.metric, scene.labels)}"
     if options.hue is None:
         return glance.extremes(name, statistics, options.x, "value", scene.labels)
     return glance.mostly(name, statistics, options.x, options.hue, scene.labels)

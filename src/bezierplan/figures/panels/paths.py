@@ -13,8 +13,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
+from bezierplan.analysis.naming import amount
 from bezierplan.figures import style
-from bezierplan.figures.amounts import amount
 from bezierplan.figures.groups import axis_label, counts, published
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, exactly_one, only
 from bezierplan.figures.panels import workspace as workspaces

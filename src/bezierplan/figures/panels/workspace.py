@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
+from bezierplan.analysis.naming import amount
 from bezierplan.figures import style
-from bezierplan.figures.amounts import amount
 from bezierplan.figures.panels import Note, Panel, RunsPanel, Sources
 from bezierplan.schema.model import Flag, Line
 from bezierplan.schema.model import Workspace as Described

@@ -4,15 +4,15 @@ Every file has `Options`, the keys that a check of this kind may have. A kind th
 `Options` are `OfRuns`) also has
 
 - `EFFECT`: how an effect follows from the point values of the cells: an `effects.Effect`
-- `cells(check, rows)`: the cells of each comparison, with its name in words, among the runs of one
-  place
+- `cells(check, rows)`: the cells of each comparison, with its `effects.Terms`, among the runs of
+  one place
 - `find(check, comparison, name)`: the `effects.Finding` of a comparison; all random draws are
   seeded by the name
 
-and any other kind `findings(check, claim, material)`: condition, name and finding of each
-comparison; it raises `Untestable` if there is nothing to judge. All p are two-sided and all
-intervals 95 %, by bootstrap over units within each condition; above `statistics.MOST_RESAMPLED`
-units by its normal approximation.
+and any other kind `findings(check, claim, material)`: terms and finding of each comparison; it
+raises `Untestable` if there is nothing to judge. All p are two-sided and all intervals 95 %, by
+bootstrap over units within each condition; above `statistics.MOST_RESAMPLED` units by its normal
+approximation.
 
 Options are read at every start of the workflow, so these files import scipy and pandas inside the
 functions that need them.

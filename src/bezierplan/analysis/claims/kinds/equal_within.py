@@ -24,7 +24,7 @@ from bezierplan.analysis.claims.check import (
     Groups,
     with_itself,
 )
-from bezierplan.analysis.claims.effects import Comparison, Finding
+from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -49,9 +49,10 @@ class Options(Comparing):
         return self
 
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
     """Each group paired with each of the others."""
-    return effects.pairs_in_words(itertools.product(check.groups, check.than), "as")
+    for group, other in itertools.product(check.groups, check.than):
+        yield Terms(group, "as", other), [group, other]
 
 
 def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from bezierplan.analysis.claims.check import EXPERIMENT, Check
-from bezierplan.analysis.claims.effects import Finding
+from bezierplan.analysis.claims.effects import Finding, Terms
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import (
@@ -49,7 +49,7 @@ class Options(Check):
     )
 
 
-def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str, str, Finding]]:
+def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
     """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no
     function of that name.
     """
@@ -66,4 +66,5 @@ def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str
         check, material.results, material.published, **check.arguments
     )
     low, high = interval or (math.nan, math.nan)
-    return [("", check.name, Finding(effect, check.effect, effect, low, high, n, mark=mark))]
+    finding = Finding(effect, check.effect, effect, low, high, n, mark=mark)
+    return [(Terms(check.name), finding)]

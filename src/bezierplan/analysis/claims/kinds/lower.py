@@ -45,7 +45,7 @@ from bezierplan.analysis.claims.check import (
     OfRuns,
     with_itself,
 )
-from bezierplan.analysis.claims.effects import Comparison, Finding
+from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, listed, wrong
@@ -100,9 +100,10 @@ class Options(Comparing):
         return [*(self.pairs or []), *itertools.chain.from_iterable(of_tiers)]
 
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
     """Each pair, or each group paired with each of the others, or of the next tier."""
-    return effects.pairs_in_words(check.compared, f"{check.direction} than")
+    for group, other in check.compared:
+        yield Terms(group, f"{check.direction} than", other), [group, other]
 
 
 def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:

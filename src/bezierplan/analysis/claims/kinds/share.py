@@ -17,7 +17,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
-from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
+from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import Metric, Model, Number, is_number, value, wrong
@@ -106,10 +106,10 @@ class Options(OfRuns):
         return self
 
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
     """One cell, of all runs."""
-    side = [check.direction] if check.direction else []
-    yield " ".join(map(str, [*(check.limit or ()), "in", *side, check.threshold])), [""]
+    event = " ".join(map(str, check.limit or ()))
+    yield Terms(event, " ".join(filter(None, ["in", check.direction])), check.threshold), [""]
 
 
 def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:

@@ -17,7 +17,7 @@ from pydantic import Field
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
-from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
+from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Flag, Metric, NumberColumn
@@ -41,9 +41,9 @@ class Options(OfRuns):
     work: Metric = Field(None, description=WORK)
 
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
     """All values of x, rising."""
-    yield f"{check.x} {check.direction}", sorted(rows[check.x].dropna().unique())
+    yield Terms(check.x, check.direction), sorted(rows[check.x].dropna().unique())
 
 
 # Decimals of a slope as a share of the steepest.

@@ -1,0 +1,490 @@
+"""All words about claims: names of comparisons, why a claim has its verdict in a plain sentence,
+where it holds, and notes. Files, page, site and reports say what is made here, from what was judged
+(`effects.MarkedComparison`) or from its row in claim_checks.csv.
+
+There is a template for each kind of test (`kinds`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from bezierplan.analysis.claims import comparisons
+from bezierplan.analysis.claims.check import Check, OfRuns, PublishedMargin
+from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.effects import MarkedComparison
+from bezierplan.analysis.claims.kinds import share
+from bezierplan.analysis.metrics import METRICS
+from bezierplan.analysis.naming import amount, column_name
+from bezierplan.schema.model import is_number, one_or_list
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import equal_within, function, trend
+
+Row = dict[str, Any]
+
+EVENTS = {
+    "below": "below",
+    "above": "above",
+    "at_most": "at most",
+    "at_least": "at least",
+    "equals": "",
+}
+_TIMES = 2.0
+"""Relative effects above this are given as multiples, not in per cent."""
+
+MOST_LISTED = 4
+"""Up to this many names are listed, otherwise only counted."""
+
+_NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one run"}
+_NEEDS["as printed"] = "in all runs of the paper"
+
+
+class PrintedTerms(NamedTuple):
+    """What a row of claim_checks.csv compares, as printed."""
+
+    group: str
+    other: str
+    place: str
+
+
+def named(row: Row, check: Check, labels: Mapping[str, str]) -> PrintedTerms:
+    """The groups and the place of a row, None where it is empty."""
+    place = places(json.loads(row["place"] or "{}"), labels)
+    if not check.against:
+        return PrintedTerms("", "", place)
+    groups = (str(_group(check, row[end])) for end in ("group", "other"))
+    return PrintedTerms(*(column_name(group, labels) for group in groups), place)
+
+
+def title(row: Row, check: Check | None, labels: Mapping[str, str]) -> str:
+    """The name of a comparison: what is compared, and where. check: None if it is no more."""
+    terms = [row[name] for name in ("group", "relation", "other")]
+    words = ["" if term is None else _plain(term) for term in terms]
+    if check and check.against:
+        words[0], words[2], _ = named(row, check, labels)
+    if row["together"]:
+        words = [f"all {row['together']:.0f} together"]
+    compared = " ".join(filter(None, words))
+    return ", ".join(filter(None, [compared, places(json.loads(row["place"] or "{}"), labels)]))
+
+
+def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
+    """Values by column, as printed: a label, or the value after the name of its column."""
+    words = []
+    for column, value in values.items():
+        names = [labels.get(str(each), _plain(each)) for each in one_or_list(value)]
+        known = all(str(each) in labels for each in one_or_list(value))
+        words.append(("" if known else f"{column_name(column, labels)} ") + " and ".join(names))
+    return ", ".join(words)
+
+
+def _plain(value: Any) -> str:
+    """A value without a label."""
+    return f"{value:g}" if is_number(value) else str(value).replace("_", " ")
+
+
+def why(row: Row, check: Check, labels: Mapping[str, str], own_criterion: bool) -> str:
+    """The sentence about a claim's decisive comparison.
+
+    row: of claim_checks.csv, None where it is empty. labels: name -> how it is printed.
+    own_criterion: whether the limit is ours because the paper gives no number.
+    """
+    template = _TEMPLATES.get(row["test"], _effect)
+    if row["effect"] is None and template is not _function:
+        template = _effect
+    notes = [
+        "judged on counted work, because seconds differ from machine to machine"
+        if isinstance(check, OfRuns) and check.work
+        else "",
+        "the paper gives no number, so this limit is ours" if own_criterion else "",
+    ]
+    names = named(row, check, labels)
+    where = f"{names.place}: " if names.place else ""
+    text = "; ".join(filter(None, [where + template(row, check, names), *notes]))
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def rule(claim: Claim | None, verdict: str, count: str | None) -> str:
+    """How many comparisons of a claim hold, such as `3 of 16; one suffices`, and how many it needs
+    where that is not plain. count: as in claims.csv. claim: None if the study has it no more.
+    """
+    held, _, total = (count or "").partition(" of ")
+    some = total and 0 < int(held) < int(total)
+    needs = {"any": "one suffices", "together": "all are needed together"}.get(
+        claim.holds if claim else ""
+    )
+    if some and not needs and verdict == "contradicted":
+        needs = "none when corrected for their number"
+    return f"{count}; {needs}" if some and needs else count or ""
+
+
+def reference(check: Check) -> float:
+    """The effect on whose other side a claim fails: the share that it needs, 0 for any other
+    test.
+    """
+    if not isinstance(check, share.Options):
+        return 0.0
+    return {"all": 1.0, "as printed": 1.0, "none": 0.0, "some": 0.0}.get(
+        check.threshold, check.threshold
+    )
+
+
+def _claimed(row: Row, check: Check) -> str:
+    """What a claim that compares groups says, in each of the comparisons taken together."""
+    together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
+    return f"the claim says {check.direction}{together}"
+
+
+def _between(row: Row, check: Check, names: PrintedTerms) -> str:
+    """Of groups that should be lower, or higher, than others."""
+    # Of an event, the share of runs in which it happens.
+    quantity = _quantity(row)
+    event = quantity.removeprefix("whether ")
+    measured = quantity if event == quantity else f"the share of runs in which {event}"
+    return (
+        f"in {measured}, {names.group} is {_apart(row, check)} {names.other}{_interval(row, check)}"
+        f"; {_claimed(row, check)}{_margin(row, check)}"
+    )
+
+
+def _apart(row: Row, check: Check) -> str:
+    """How a group compares with another: `3 cell lower than`, `25,000 times`."""
+    effect = row["effect"]
+    if not effect:
+        return "equal to"
+    if check.relative and effect > _TIMES:
+        return f"{_printed(1 + effect)} times"
+    return f"{_size(row, check)} {_side(effect)} than"
+
+
+def _side(effect: float) -> str:
+    return "lower" if effect < 0 else "higher"
+
+
+def _equal(row: Row, check: equal_within.Options, names: PrintedTerms) -> str:
+    """Of groups that should be alike, or apart by a stated amount."""
+    target = check.target
+    says = (
+        f"by how much: {_amount(abs(target), row, check)} {_side(target)}"
+        if target
+        else "that they are alike"
+    )
+    return (
+        f"in {_quantity(row)}, {names.group} is {_apart(row, check)} "
+        f"{names.other}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
+    )
+
+
+def _trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
+    """Of a quantity that should rise or fall along another."""
+    along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
+    claimed = {"up": "rises", "down": "falls"}[check.direction]
+    return (
+        f"{_quantity(row)} {moves} by {_size(row, check)}{_interval(row, check)} from the least to "
+        f"the largest {along}; the claim says that it {claimed}{_margin(row, check)}"
+    )
+
+
+def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
+    """Of a share of runs in which an event happens."""
+    happens = _event(row, check)
+    if check.pick:
+        picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
+        return (
+            f"the claim needs that, in {picked}, {happens}; "
+            f"{'this holds' if row['effect'] else 'this does not hold'}"
+        )
+    needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
+    needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
+    low, high = row["low95"], row["high95"]
+    between = (
+        ""
+        if low is None or high is None
+        else f" (95 % interval {100 * low:.3g} to {100 * high:.3g} %)"
+    )
+    units = "runs" if check.replicate == "repeat" else f"means by {check.replicate}"
+    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}{between}"
+    return f"{found}; the claim needs it {needed}"
+
+
+def _event(row: Row, check: share.Options) -> str:
+    """What happens in a run that counts."""
+    meaning = _quantity(row)
+    if check.limit:
+        key, value = check.limit
+        unit = "" if str(row["unit"]) in meaning else _unit(row)
+        return " ".join(f"{meaning} is {EVENTS[key]} {value:g}{unit}".split())
+    return (
+        meaning.removeprefix("whether ")
+        if meaning.startswith("whether ")
+        else f"the path is {row['metric'].replace('_', ' ')} ({meaning})"
+    )
+
+
+def _function(row: Row, check: function.Options, names: PrintedTerms) -> str:
+    """Of what a function of the study's own finds."""
+    if row["effect"] is None:
+        return f"{check.effect}: no value"
+    return f"{check.effect}: {_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
+
+
+def _effect(row: Row, check: Check, names: PrintedTerms) -> str:
+    """Of any other comparison; without an effect, how many runs of each group have a value."""
+    if row["effect"] is not None:
+        compared = " ".join(filter(None, [names.group, row["relation"], names.other]))
+        quantity = ", ".join(filter(None, [_quantity(row), compared]))
+        return f"{quantity}: {_amount(row['effect'], row, check)}{_interval(row, check)}"
+    counts = (row["counted"] or "").split(", ")
+    groups = [f" of {group}" for group in (names.group, names.other) if group] or [""]
+    if not row["counted"] or len(counts) != len(groups):
+        return f"{_quantity(row)} has no value"
+    have = " and ".join(f"in {count} runs{group}" for count, group in zip(counts, groups))
+    claimed = f"; {_claimed(row, check)}" if check.against and check.direction else ""
+    return f"{_quantity(row)} has a value {have}{claimed}"
+
+
+_TEMPLATES = {
+    "lower": _between,
+    "equal_within": _equal,
+    "trend": _trend,
+    "share": _share,
+    "function": _function,
+}
+
+
+def _quantity(row: Row) -> str:
+    """What is measured, with its statistic: `exact arc length (mean)`."""
+    statistic = row["statistic"]
+    measured = meaning(row["metric"] or "") or (row["metric"] or "").replace("_", " ")
+    return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
+
+
+def meaning(metric: str) -> str:
+    """What a metric measures, in a phrase; empty if it is not one of the metrics of runs."""
+    return METRICS[metric].meaning if metric in METRICS else ""
+
+
+def _unit(row: Row) -> str:
+    return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
+
+
+def _size(row: Row, check: Check) -> str:
+    return _amount(abs(row["effect"]), row, check)
+
+
+def _amount(value: float, row: Row, check: Check) -> str:
+    """An effect with its unit; a relative one in per cent."""
+    if check.relative:
+        return f"{_printed(100 * value)} %"
+    return amount(_printed(value), _unit(row).strip()).strip()
+
+
+def _printed(value: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):,.10g}"
+
+
+def _interval(row: Row, check: Check) -> str:
+    ends, unit = [row["low95"], row["high95"]], ""
+    if None in ends:
+        return ""
+    if check.relative and row["effect"] > _TIMES and check.against:
+        ends, unit = [1 + end for end in ends], " times"
+    elif check.relative:
+        ends, unit = [100 * end for end in ends], " %"
+    return f" (95 % interval {' to '.join(map(_printed, ends))}{unit})"
+
+
+def _margin(row: Row, check: Check) -> str:
+    """The limit within which a difference does not count, and who chose it."""
+    if row["margin"] is None:
+        return ""
+    printed = isinstance(check, OfRuns) and isinstance(check.margin, PublishedMargin)
+    origin = "our choice, and not more than the printed difference" if printed else "our choice"
+    return f"; differences below {_amount(row['margin'], row, check)} do not count ({origin})"
+
+
+# Notes
+
+
+def by_own_criterion(claim: Claim, verdict: str) -> str:
+    """The first words of the reason for a claim that holds, or does not, by a threshold of ours,
+    where the paper gives no number.
+    """
+    if claim.criterion is None or verdict == "undecided":
+        return ""
+    word = {"supported": "holds", "partly": "holds in part"}.get(verdict, "fails")
+    return f"{word} by our criterion alone"
+
+
+def less_than(deciding: Sequence[MarkedComparison], verdict: str, unit: str) -> str:
+    """Of a claim without effect: below what size all differences that are shown to be negligible
+    lie; empty for any other.
+    """
+    within = [each for each in deciding if each.mark_family == "0"]
+    if verdict != "no effect" or not within:
+        return ""
+    most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
+    relative = within[0].check.relative
+    size = f"{100 * most:.2g} %" if relative else f"{most:.2g} {unit}".removesuffix(" -")
+    where = (
+        "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
+    )
+    return f"{where}differs by less than {size}"
+
+
+# Where a claim holds
+
+
+def _in_words(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> Entry:
+    """A comparison with the factors that distinguish it from the others of its claim."""
+    factors: dict[str, Any] = {}
+    if entry.comparison is not None:
+        if entry.check.against and not entry.parts:
+            group, other = (_group(entry.check, cell) for cell in entry.comparison.cells)
+            factors |= {"against": other, "group": group}
+        factors |= dict(entry.place)
+    if len({_what(other.check) for other in deciding}) > 1:
+        factors["what"] = _what(entry.check)
+    return Entry(factors, entry.mark_family)
+
+
+def _what(check: Check) -> str:
+    """What a check compares, in words."""
+    statistic = check.statistic if "statistic" in check.model_fields_set else ""
+    return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
+
+
+def where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, str]) -> str:
+    """`told_apart` of the comparisons that decide; if all or none of these hold, which
+    they may do because of the closest of several that are taken together, of these one by one.
+    """
+    deciding = [each for each in findings if each.primary]
+    words = told_apart([_in_words(each, deciding) for each in deciding], labels)
+    single = [
+        each._replace(mark_family=each.mark)
+        for each in findings
+        if not each.primary and any(each.check is whole.check for whole in deciding if whole.parts)
+    ]
+    if words or not any(each.mark == "+" for each in single):
+        return words
+    words = told_apart([_in_words(each, single) for each in single], labels)
+    return f"one by one {words}" if words else ""
+
+
+def _group(check: Check, group: Any) -> Any:
+    """A group's name; for a number, which a file may hold as text, with its column."""
+    if isinstance(group, str) and check.cells != "method":
+        with suppress(ValueError):
+            group = float(group)
+    return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
+
+
+def disagreement(findings: Sequence[MarkedComparison]) -> str:
+    """A note where seconds disagree with the counted work that is judged in their place."""
+    seconds = {_key(each): each.mark for each in findings if comparisons.is_timed(each.check)}
+    pairs = [
+        (each.mark, seconds[_key(each)])
+        for each in findings
+        if each.primary and _key(each) in seconds and each.check._printed_metric
+    ]
+    differing = sum(mark != other for mark, other in pairs)
+    return (
+        f"judged on counted work; seconds disagree in {differing} of {len(pairs)}"
+        if differing
+        else ""
+    )
+
+
+def _key(entry: MarkedComparison) -> tuple:
+    """What a comparison is, whichever of those that it takes together decides."""
+    return entry.place, len(entry.parts) or entry.terms
+
+
+class Entry(NamedTuple):
+    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
+    columns), and its mark.
+    """
+
+    factors: Mapping[str, Any]
+    mark: str
+
+
+def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
+    """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
+
+    They are split by the factor that best separates those that hold from those that do not; of a
+    value with both, it says how many hold. If none holds, the words are about the contrary.
+    labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
+    """
+    sought = "+" if any(each.mark == "+" for each in comparisons) else "-"
+    number = sum(each.mark == sought for each in comparisons)
+    if number in (0, len(comparisons)):
+        return ""
+    factor = _best_factor(comparisons, sought)
+    marks: dict[Any, list[bool]] = {}
+    for each in comparisons if factor else []:
+        marks.setdefault(each.factors[factor], []).append(each.mark == sought)
+    full = [value for value, own in marks.items() if all(own)]
+    words = [_chosen(factor, full, list(marks), labels)] if full else []
+    words += [
+        f"{_before(factor)}{_name(value, labels)} in {sum(own)} of {len(own)}"
+        for value, own in marks.items()
+        if any(own) and not all(own)
+    ]
+    unknown = sum(each.mark == "?" for each in comparisons)
+    words += [] if factor else [f"in {number} of {len(comparisons)}"]
+    words += [f"undecided in {unknown} of {len(comparisons)}"] if unknown else []
+    return ("" if sought == "+" else "the contrary ") + "; ".join(words)
+
+
+def _best_factor(comparisons: Sequence[Entry], sought: str) -> str | None:
+    """The factor of all comparisons with the least mixed values (Gini impurity), the first among
+    equals; None if none has two values.
+    """
+    best, least = None, np.inf
+    for factor in [
+        factor
+        for factor in comparisons[0].factors
+        if all(factor in each.factors for each in comparisons)
+    ]:
+        parts: dict[Any, list[bool]] = {}
+        for each in comparisons:
+            parts.setdefault(each.factors[factor], []).append(each.mark == sought)
+        impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
+        if len(parts) > 1 and impurity < least - 1e-9:
+            best, least = factor, impurity
+    return best
+
+
+def _chosen(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
+    """Words for a subset of a factor's values."""
+    others = [value for value in every if value not in subset]
+    few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
+    if few and _before(factor).startswith("at "):
+        return f"{_before(factor)}other than {_joined(others, labels)}"
+    if few:
+        return f"{_before(factor)}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
+    return f"{_before(factor)}{_joined(subset, labels)}"
+
+
+def _joined(values: list, labels: Mapping[str, str]) -> str:
+    names = [_name(value, labels) for value in values]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _name(value: Any, labels: Mapping[str, str]) -> str:
+    return labels.get(str(value), f"{value:g}" if isinstance(value, float) else str(value))
+
+
+def _before(factor: str) -> str:
+    """The word before the values of a factor."""
+    words = {"against": "against", "group": "for", "method": "for"}
+    places = ("what", "workspace", "problem", "experiment", "in")
+    return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

@@ -1,0 +1,29 @@
+"""Amounts with their units, and names as they are printed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+# Units with a plural; others are abbreviations, such as m.
+_WORDS = ("unit", "cell", "step")
+
+
+def amount(number: str, unit: str) -> str:
+    """A number, as printed, with its unit.
+
+    >>> amount("1", "cell"), amount("21.83", "cell"), amount("0.5", "m")
+    ('1 cell', '21.83 cells', '0.5 m')
+    """
+    one = abs(float(number.replace(",", ""))) == 1
+    return f"{number} {unit}{'s' if unit in _WORDS and not one else ''}"
+
+
+def printed(value: Any, column: str, labels: Mapping[str, str]) -> str:
+    """How a value of a column is printed: as its label, or a number after the column's label."""
+    name = value if isinstance(value, str) else f"{value:g}"
+    without = name if isinstance(value, str) else f"{column_name(column, labels)} = {name}"
+    return labels.get(name, without)
+
+
+def column_name(column: str, labels: Mapping[str, str]) -> str:
+    """How a column or a metric is printed."""
+    return labels.get(column, column.replace("_", " "))
