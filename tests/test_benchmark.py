@@ -73,7 +73,7 @@ def test_a_swarm_tests_every_sample_with_every_circle_and_measures_paths_that_ma
     assert plan.history.tolist() == run().history.tolist()
     paths = 4 * 7
     measured = done.pop("roots") / 49
-    assert measured.is_integer() and 4 <= measured < paths
+    assert measured in range(4, paths)
     assert done == Counter(terms=3 * 50 * paths, obstacles=2 * 50 * paths)
     assert chaotic_pso._swarm is before  # compiled again
 
