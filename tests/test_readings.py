@@ -155,6 +155,18 @@ def test_what_excludes_a_reading(lengths, least, why):
     assert readings.excluded([quantity], found, None) in ("", why)
 
 
+def test_the_order_of_printed_means_beside_ours():
+    names = [f"m{number}" for number in range(6)]
+    printed = pd.DataFrame({"method": names, "value": [3, 1, 2, 6, 5, 4], "n": 2, "votes": True})
+    quantity = readings.Quantity("tried", {}, {}, "length", "mean", 2, None, ["method"], printed)
+    runs = pd.DataFrame({"method": names, "repeat": 0, "feasible": True})
+    found = Results(runs.assign(length=[3, 1, 2, 6, 5, 4]), {}, pd.DataFrame())
+    reverse = found._replace(runs=found.runs.assign(length=-found.runs["length"]))
+    assert readings.lowest_order([quantity], {"tried": found}) == pytest.approx(1)
+    assert readings.lowest_order([quantity], {"tried": reverse}) == pytest.approx(-1)
+    assert np.isnan(readings.lowest_order([quantity._replace(statistic="count")], {}))
+
+
 def test_an_excluding_sentence_saves_the_runs_and_pairs_are_tried():
     made, _ = job("tharwat2018")
     tried = []

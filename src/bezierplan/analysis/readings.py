@@ -12,8 +12,8 @@ for two that config names as a pair, because they trade off. It is excluded
 For the others there is a p of fit (`fit`), which decides no number, as most maps are ours.
 
 Columns of the readings: study; reading; meaning (what it changes, in words); excluded_by; p (how
-well the printed numbers that vote fit; empty if it was not run); numbers (how many these are).
-Columns of claims by reading: study; id (of the claim); reading; verdict.
+well the printed numbers that vote fit; empty if it was not run); order (`lowest_order`); numbers
+(how many vote). Columns of claims by reading: study; id (of the claim); reading; verdict.
 """
 
 import math
@@ -43,6 +43,8 @@ VOTING = {"mean": "mean", "median": "median", "count": "count", "share": "count"
 """Statistics of printed numbers that vote -> what ours are."""
 LEAST_P = 0.01
 """A reading with a lower p does not fit."""
+LEAST_ORDERED = 5
+"""Means whose order says something."""
 LOST = 0.5
 """Share of runs without a path from which the proposed method is said to return none."""
 
@@ -178,6 +180,21 @@ def excluded(quantities: list[Quantity], results: dict[str, Results], proposed: 
         "the proposed method returns no path": lost,
     }
     return "; ".join(reason for reason, holds in reasons.items() if holds)
+
+
+def lowest_order(quantities: list[Quantity], results: dict[str, Results]) -> float:
+    """The lowest rank correlation of printed means with ours, of those with `LEAST_ORDERED` methods
+    or conditions; NaN without such.
+    """
+    orders = [
+        each.printed["value"].corr(
+            by_unit(each, results[each.experiment]).mean(axis=1).set_axis(each.printed.index),
+            method="spearman",
+        )
+        for each in quantities
+        if each.statistic == "mean" and each.printed["votes"].sum() >= LEAST_ORDERED
+    ]
+    return min(orders, default=math.nan)
 
 
 def _with_lost(results: Results) -> Results:
@@ -338,7 +355,7 @@ def of_study(
     rows, verdicts, fits, done = [], [], False, 0
     among, every = (sum(values) for values in zip(*((not why, runs) for *_, why, runs in tried)))
     for number, (reading, chunks, why, runs) in enumerate(tried, 1):
-        name, p = name_of(reading), math.nan
+        name, p, order = name_of(reading), math.nan, math.nan
         if chunks:
             # Each may take minutes, so whoever waits sees it in the terminal.
             place = f"{study}: reading {number} of {len(tried)}, {name}"
@@ -346,6 +363,7 @@ def of_study(
             results = runner.results(reading, chunks)
             why, done = excluded(quantities, results, proposed), done + runs
             p = fit.p_of_fit(groups(quantities, results), generator(f"{study}/{name}/fit"))
+            order = lowest_order(quantities, results)
             fits |= p >= LEAST_P and not why
             if not why and (p >= LEAST_P or not fits):
                 verdicts.append(judge(results, among).assign(study=study, reading=name))
@@ -356,6 +374,7 @@ def of_study(
                 "meaning": "; ".join(f"{by_id[each].detail}: {reading[each]}" for each in reading),
                 "excluded_by": why,
                 "p": p,
+                "order": order,
                 "numbers": int(sum(each.printed["votes"].sum() for each in quantities)),
             }
         )

@@ -40,8 +40,7 @@ def covered(claims: Iterable[Claim], experiments: Collection[str]) -> list[Claim
             check.experiments and {*check.experiments} <= {*experiments} and not _timed(check)
             for check in checks
         ):
-            first = {column: values[:1] for column, values in claim.variants.items()}
-            chosen.append(claim.but(checks=checks, variants=first))
+            chosen.append(claim.in_primary_variant().but(checks=checks))
     return chosen
 
 
