@@ -148,7 +148,7 @@ def of_figure(layout, name, folder):
 OURS = re.compile(
     r"start|target|obstacle|occupied cell|surplus cell|control points|height \d|cut\b|95 % "
     r"interval|hollow|published|outlier|mean|largest magnitude|last position|local minimum|"
-    r"lowest value|fixed control point"
+    r"lowest value|fixed control point|first collision|nodes"
 )
 
 
