@@ -219,7 +219,7 @@ TURNED = table_of(id="C1", reading=["default", "O1=2", "O2=3", "O3=4"])
 def test_a_claim_depends_on_a_reading_that_fits_and_decides_the_opposite(
     verdicts, verdict, words, reason
 ):
-    found = by_reading.told(CLAIMS, KEPT, TURNED.assign(verdict=verdicts))
+    found = by_reading.told(CLAIMS, KEPT, TURNED.assign(verdict=verdicts), {})
     assert [*found["verdict"]] == [verdict, "undecided", "supported", "undecided"]
     assert found["readings"][0] == f"supported under {words} readings"
     assert [*found["readings"][1:]] == ["", by_reading.BY_DEFAULT, ""]
@@ -229,7 +229,7 @@ def test_a_claim_depends_on_a_reading_that_fits_and_decides_the_opposite(
 def test_where_no_reading_fits_all_that_nothing_excludes_count():
     verdicts = ["supported", "supported", "no effect", "contradicted"]
     none_fits = KEPT.assign(p=[0.001, 0.002, 0.001, np.nan])
-    found = by_reading.told(CLAIMS, none_fits, TURNED.assign(verdict=verdicts))
+    found = by_reading.told(CLAIMS, none_fits, TURNED.assign(verdict=verdicts), {})
     assert found["verdict"][0] == "depends"
     assert found["readings"][0] == "supported under 2 of 3 readings"
 

@@ -247,7 +247,7 @@ class Claims(Job):
         import pandas as pd
 
         from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.claims import by_reading, judge
+        from bezierplan.analysis.claims import by_reading, judge, sentences
         from bezierplan.running import inputs
 
         judged, checks = judge.judge(
@@ -257,7 +257,8 @@ class Claims(Job):
             study_code.functions(self.code),
         )
         read = [pd.read_csv(file) for file in input_files.readings] or [pd.DataFrame()] * 2
-        self.write(by_reading.told(judged, *read), output_files.claims)
+        names = sentences.variants_named(self.claims, self.labels)
+        self.write(by_reading.told(judged, *read, names), output_files.claims)
         self.write(checks, output_files.checks)
 
 

@@ -11,7 +11,7 @@ The verdict on a claim is that under the default, from many runs. It `depends`
   wider; and supported and partly are one side.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import pandas as pd
@@ -57,9 +57,14 @@ def judged(job: Any, *material: Any) -> pd.DataFrame:
     return claims.loc[~claims["id"].isin(missing), ["id", "verdict"]]
 
 
-def told(claims: pd.DataFrame, readings: pd.DataFrame, verdicts: pd.DataFrame) -> pd.DataFrame:
+def told(
+    claims: pd.DataFrame,
+    readings: pd.DataFrame,
+    verdicts: pd.DataFrame,
+    names: Mapping[str, str],
+) -> pd.DataFrame:
     """Claims of a study with what their verdicts depend on. readings, verdicts: as from
-    `readings.of_study`, empty without readings.
+    `readings.of_study`, empty without readings. names: variant -> its values in words.
     """
     if len(readings):
         open_ones = readings[readings["excluded_by"].fillna("").eq("") & readings["p"].notna()]
@@ -73,7 +78,7 @@ def told(claims: pd.DataFrame, readings: pd.DataFrame, verdicts: pd.DataFrame) -
         others = claims[(claims["id"] == claim["id"]) & ~claims["primary"].astype(bool)]
         others = others[others["verdict"].isin(SIDES) & (others["verdict"] != claim["verdict"])]
         for verdict, variants in others.groupby("verdict", sort=False)["variant"]:
-            words.append(f"{verdict} with {_named([*variants], 'variants')}")
+            words.append(f"{verdict} with {_named([names[each] for each in variants], 'variants')}")
         if len(readings):
             own = verdicts[verdicts["id"] == claim["id"]].set_index("reading")["verdict"]
             own = own[own.index.isin(kept.index)]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis.claims import comparisons
+from bezierplan.analysis.claims import comparisons, variants
 from bezierplan.analysis.claims.check import Check, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
@@ -72,6 +72,15 @@ def title(row: Row, check: Check | None, labels: Mapping[str, str]) -> str:
         words = [f"all {row['together']:.0f} together"]
     compared = " ".join(filter(None, words))
     return ", ".join(filter(None, [compared, places(json.loads(row["place"] or "{}"), labels)]))
+
+
+def variants_named(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[str, str]:
+    """Variants of claims, by their names in claims.csv, as printed."""
+    return {
+        variants.name_of(values): places(values, labels)
+        for claim in claims
+        for values in variants.variants(claim)
+    }
 
 
 def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:

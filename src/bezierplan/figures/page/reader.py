@@ -12,7 +12,7 @@ import pandas as pd
 
 from bezierplan import planners
 from bezierplan.analysis import comparison, naming, wholes
-from bezierplan.analysis.claims import sentences, variants
+from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView
@@ -263,16 +263,13 @@ def _claims(
         compared.setdefault((row["id"], row["variant"]), []).append(row)
     others = {row["id"]: row for row in records(outcome) if row["primary"]}
     claims, there = [], content.tables.keys() | content.figures.keys()
+    names = sentences.variants_named([*content.claims.values()], content.labels)
     for _, rows in files["claims"].groupby("id", sort=False):
         every = records(rows)
         claim = next(row for row in every if row["primary"])
         comparisons = compared.get((claim["id"], claim["variant"]), [])
         described = content.claims.get(claim["id"])
         checks = described.checks if described else []
-        names = {
-            variants.name_of(values): sentences.places(values, content.labels)
-            for values in (variants.variants(described) if described else [])
-        }
         for each in comparisons:
             check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
             each["reference"] = sentences.reference(check) if check else 0.0
