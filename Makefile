@@ -64,7 +64,9 @@ wheel: .venv/ready-dev ## a wheel for pip, into dist
 image: ## an image for Docker with the workflow and its environment, named bezierplan
 	docker build --tag bezierplan .
 
-benchmark: .venv/ready ## speed of the inner loops, compared with a lower bound
+benchmark: .venv/ready ## what starts, planners, bounds, claims and page cost, compared with docs/benchmark.csv (ARGS: store, grown)
+	@$(UNLOCK)
+	$(SNAKEMAKE) smoke
 	$(RUN) tests/benchmark/run.py $(ARGS)
 
 mutants: .venv/ready-dev ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
@@ -104,7 +106,7 @@ newest: .venv/ready-dev ## check whether newer libraries change a result or fail
 	$(RUN) tests/newest/run.py $(ARGS)
 
 clean: ## remove results and caches
-	rm -rf results/smoke results/full results/extended results/comparison results/benchmark .snakemake .cache
+	rm -rf results/smoke results/full results/extended results/comparison results/benchmark.csv .snakemake .cache
 
 distclean: clean ## remove the environment (.venv) as well
 	rm -rf .venv

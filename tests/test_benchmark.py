@@ -1,27 +1,19 @@
-"""`make benchmark`: each part runs at its smallest size, and what it measures is right where that
-is known.
-"""
+"""`make benchmark` names what has become slower, and fails where it is much; `make compare`."""
 
 import importlib
 import math
 import sys
-from collections import Counter
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import pytest
-from test_binary_genetic import SETTINGS as GENETIC
-from test_chaotic_pso import SETTINGS as SWARM
 
-from bezierplan.planners import binary_genetic, chaotic_pso
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.problem import Problem
+from bezierplan.geometry import shortest_paths
+from bezierplan.planners import known_planners
 
 SCRIPTS = Path(__file__).parent / "benchmark"
 NAMES = {file.stem for file in SCRIPTS.glob("*.py")}
-SIZES = np.array([10.0, 20.0, 40.0, 80.0, 160.0, 320.0])
+STORED = {"start: list": 40.0, "planner: prm": 0.05}
 
 
 @pytest.fixture
@@ -33,62 +25,78 @@ def script(monkeypatch):
         del sys.modules[name]
 
 
-@pytest.mark.parametrize("part", ["runs", "least", "simulation", "limits", "growth", "start"])
-def test_each_part_runs_at_its_smallest_size(part, script, tmp_path, monkeypatch, capsys):
+@pytest.fixture
+def benchmark(script, monkeypatch, tmp_path, capsys):
+    """Runs the benchmark of `STORED`, given the costs of each as they are measured in turn: the
+    status and the last lines.
+    """
     run = script("run")
-    assert part in run.PARTS
-    monkeypatch.setattr(run.frame, "FOLDER", tmp_path)
-    monkeypatch.setattr(run.frame, "ROUNDS", 1)
-    run.main([part, "small"])
-    heading, *lines = capsys.readouterr().out.strip().splitlines()
-    assert heading.startswith(f"{part}: ")
-    assert len(lines) == len((tmp_path / f"{part}.csv").read_text().splitlines()) - 1 > 1
+    monkeypatch.setattr(run, "TREE", tmp_path)
+    monkeypatch.setattr(run, "STORED", tmp_path / "stored.csv")
+    monkeypatch.setattr(run, "MADE", tmp_path / "made.csv")
+    pd.Series(STORED, name="ratio").rename_axis("cost").to_csv(run.STORED)
+
+    def measure(costs, *words):
+        works = {name: iter(times) for name, times in costs.items()}
+        monkeypatch.setattr(run.parts, "short", lambda: works.items())
+        monkeypatch.setattr(run.frame, "ratio", next)
+        status = run.main([*words])
+        return status, capsys.readouterr().out.splitlines()[len(costs) :]
+
+    return measure
 
 
-@pytest.mark.parametrize("power", [0.0, 0.5, 1.0, 2.0, 3.0])
-def test_slope_of_a_power_is_its_exponent(script, power):
-    line = script("growth").slope(SIZES, 0.003 * SIZES**power)
-    assert line.value == pytest.approx(power, abs=1e-12)
-    assert power == 1 or line.steeper == (power > 1)  # rounding decides at the limit
+def times(**factors):
+    """Costs as multiples of the stored ones, by a word of their names."""
+    return {
+        name: [cost * factor for factor in factors.get(name.split()[-1], [1.0])]
+        for name, cost in STORED.items()
+    }
 
 
-def test_slopes_with_a_constant_cost_or_errors_of_measurement(script):
-    slope = script("growth").slope
-    assert slope(SIZES, np.where(SIZES < 40, 1.0, SIZES**2 / 1600)).steeper
-    noise = np.exp(np.random.default_rng(0).normal(0, 0.1, (1000, len(SIZES))))
-    assert np.mean([slope(SIZES, SIZES * each).steeper for each in noise]) < 0.12
-    assert np.mean([slope(SIZES, SIZES**2 * each).steeper for each in noise]) > 0.99
+@pytest.mark.parametrize(
+    ("costs", "status", "named"),
+    [
+        (times(), 0, "nothing is slower"),
+        (times(prm=[1.24], list=[0.5]), 0, "nothing is slower"),
+        (times(prm=[1.5, 1.6, 1.7]), 0, "planner: prm: 1.50 times as long"),
+        (times(prm=[1.9, 1.6, 1.1], list=[3.0, 1.2]), 0, "nothing is slower"),
+        (times(list=[3.0, 3.2, 3.1]), 1, "start: list: 3.00 times as long"),
+        (times() | {"planner: new": [9.0]}, 0, "nothing is slower"),
+    ],
+)
+def test_what_stays_slow_is_named_and_fails_where_it_is_much(benchmark, costs, status, named):
+    found, lines = benchmark(costs)
+    assert found == status
+    assert lines[0].startswith(named)
+    assert lines[1:] == ["made.csv"]
 
 
-def test_a_swarm_tests_every_sample_with_every_circle_and_measures_paths_that_may_be_best(script):
-    discs = np.array([[5.0, 5.0], [3.0, 7.0]]), np.array([1.0, 0.5])
-    field = Problem("", Circles((0.0, 10.0, 0.0, 10.0), *discs, "unit"), (1.0, 1.0), (9.0, 9.0))
-    size = {"control_points": 3, "samples": 50, "particles": 4, "iterations": 6, "stall_limit": 0}
-    before = chaotic_pso._swarm
-
-    def run():
-        return chaotic_pso.plan(field, np.random.default_rng(0), **(SWARM | size))
-
-    plan, done = script("least").operations(run)
-    assert plan.history.tolist() == run().history.tolist()
-    paths = 4 * 7
-    measured = done.pop("roots") / 49
-    assert measured in range(4, paths)
-    assert done == Counter(terms=3 * 50 * paths, obstacles=2 * 50 * paths)
-    assert chaotic_pso._swarm is before  # compiled again
+def test_a_stored_copy_is_compared_with_next_time(benchmark, tmp_path):
+    assert benchmark(times(list=[3.0]), "store") == (
+        0,
+        ["nothing is slower than stored", "stored.csv"],
+    )
+    assert benchmark(times(list=[3.0]))[0] == 0
+    assert (tmp_path / "stored.csv").read_text() == (tmp_path / "made.csv").read_text()
 
 
-def test_a_curve_of_one_piece_is_measured_whole_unless_it_is_a_parents(script):
-    grid = Grid(np.zeros((8, 8), dtype=bool), 1.0, "cell")
-    problem = Problem("", grid, grid.centre(0), grid.centre(63))
-    size = {"genes": 4, "samples": 40, "population": 6, "generations": 0}
-    settings = GENETIC | {"curve": "bezier", "spacing": "parameter"} | size
-    rng = np.random.default_rng(0)
-    _, done = script("least").operations(lambda: binary_genetic.plan(problem, rng, **settings))
-    measured = done["roots"] / 39
-    assert done["terms"] == 6 * 40 * measured
-    assert done["cells"] == 39 * measured
-    assert 1 <= measured <= 6
+def test_a_cost_is_a_multiple_of_the_fixed_work(script):
+    frame = script("frame")
+    assert 2 < frame.ratio(lambda: [frame.fixed() for _ in range(4)]) < 8
+
+
+def test_each_planner_is_run_where_a_study_uses_it(script):
+    assert sorted(name for name, *_ in script("frame").first_runs()) == known_planners()
+
+
+def test_what_grows(script):
+    parts = script("parts")
+    for room in (parts._room(3, parts._discs), parts._room(3, parts._squares), parts._blocks(20)):
+        side = round(room.bounds[1])
+        bound = shortest_paths.shortest_path(parts._across(room, side))
+        assert 1 < bound.length / math.hypot(side - 0.1, side - 0.1) < 1.2
+    parts._study(2, 10, "-n")
 
 
 @pytest.mark.parametrize("number", range(5))

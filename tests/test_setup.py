@@ -197,7 +197,7 @@ def test_clean_keeps_the_environment_and_what_is_tracked(finished):
         "results/full/a",
         "results/extended/a",
         "results/comparison/a",
-        "results/benchmark/a",
+        "results/benchmark.csv",
         ".snakemake/a",
         ".cache/a",
     ):

@@ -1,91 +1,101 @@
-"""What the parts of `make benchmark` share: CPU time, runs of the studies' methods, and a table.
+"""CPU time, and what is timed: runs of the studies' methods."""
 
-CPU time is that of one core. Ratios carry over to other machines; the fastest of several rounds is
-least disturbed by what else runs.
-"""
+import json
+import resource
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
 
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
-
-import pandas as pd
+import numpy as np
 
 from bezierplan.places import STUDIES
-from bezierplan.planners import Plan
-from bezierplan.running import execution, problems
+from bezierplan.planners import Plan, planner_module
+from bezierplan.running import execution, worlds
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
+from bezierplan.workspaces.problem import Problem
 
-FOLDER = Path(__file__).parents[2] / "results" / "benchmark"
-ROUNDS = 5
-WIDTH = 14
-"""Characters of a column, the first aside."""
+Work = Callable[[], object]
 
-Row = tuple[object, ...]
-
-
-def cpu_seconds(work: Callable[[], object], rounds: int = ROUNDS) -> float:
-    """CPU seconds of the fastest of several rounds, after one that compiles."""
-    return cpu_seconds_of_each([work], rounds)[0]
+LEAST, LONG = 0.02, 0.8
+"""CPU seconds for which a short work is repeated, so that clocks can tell; and from which a long
+one is measured once, after one that warms caches.
+"""
+ROUNDS = 4
 
 
-def cpu_seconds_of_each(works: Sequence[Callable[[], object]], rounds: int = ROUNDS) -> list[float]:
-    """As `cpu_seconds`, of several works, each in turn in every round: what slows a round down
-    slows all of them.
-    """
-    for work in works:
-        work()
-    return [
-        min(seconds) for seconds in zip(*([_once(work) for work in works] for _ in range(rounds)))
-    ]
-
-
-def _once(work: Callable[[], object]) -> float:
-    before = time.process_time()
+def cpu_seconds(work: Work) -> float:
+    """CPU seconds of this process and of those that it has started and waited for."""
+    before = _spent()
     work()
-    return time.process_time() - before
+    return _spent() - before
+
+
+def _spent() -> float:
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def fixed() -> None:
+    """A fixed piece of work, such as programs and kernels do: text, lists, arrays."""
+    rows = [{"name": str(number), "value": number % 97} for number in range(6000)]
+    json.dumps(sorted(json.loads(json.dumps(rows)), key=lambda row: (row["value"], row["name"])))
+    values = np.arange(1.0, 60_001.0)
+    for _ in range(20):
+        np.sqrt(values).cumsum().sort()
+
+
+def ratio(work: Work) -> float:
+    """CPU time of a work as a multiple of that of `fixed`, each the least of some rounds in turn:
+    what else a machine does slows both down.
+    """
+    once = cpu_seconds(work)
+    if once < LONG:  # it may have compiled
+        once = cpu_seconds(work)
+    times, rounds = 1 + int(LEAST / once), ROUNDS if once < LONG else 1
+
+    def again() -> None:
+        for _ in range(times):
+            work()
+
+    fixed_seconds, seconds = [], []
+    for _ in range(rounds):
+        fixed_seconds += [cpu_seconds(fixed) for _ in range(3)]
+        seconds.append(cpu_seconds(again) / times)
+    return min(seconds) / min(fixed_seconds)
 
 
 def study(key: str) -> Study:
+    """A study of this project."""
     return reading.read_study(STUDIES / key)
 
 
-def studies(small: bool) -> list[Study]:
-    """All studies, or the first."""
-    keys = sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
-    return [study(key) for key in keys[: 1 if small else None]]
+def studies() -> list[Study]:
+    """All studies of this project."""
+    return [study(file.parent.name) for file in sorted(STUDIES.glob("*/experiments.yaml"))]
 
 
-def methods(study: Study) -> Iterator[tuple[str, str]]:
-    """Every method with the first experiment that it takes part in; without baselines, which are
-    the same everywhere, and drives through worlds that move.
+def first_runs() -> Iterator[tuple[str, Problem, Work]]:
+    """Of each planner that a study uses, a problem and a run on it: the first condition of the
+    first experiment, of those in worlds that stand still if there is one.
     """
-    seen = set(study.baselines)
-    for experiment, description in study.experiments.items():
-        for method in description.methods:
-            if method not in seen and not study.moves(experiment):
-                seen.add(method)
-                yield experiment, method
+    places = [
+        (study, experiment, method)
+        for study in studies()
+        for experiment in study.experiments
+        for method in study.methods_of(experiment)
+    ]
+    places.sort(key=lambda place: place[0].moves(place[1]))
+    first = {place[0].planner(place[2]): place for place in reversed(places)}
+    for planner, (own, experiment, method) in first.items():
+        job = jobs.job(own, experiment, method, "smoke", 0)
+        built, _ = worlds.build_all(jobs.problems_job(own, experiment, "smoke"), own.folder)
+        condition = job.conditions()[0]
+        problem, settings = built[condition.problem], execution.settings_in(job, condition)
+        plan = planner_module(planner).plan
+        yield planner, problem, partial(_plan, plan, problem, settings)
 
 
-def first_run(study: Study, experiment: str, method: str) -> tuple[str, Callable[[int], Plan]]:
-    """The first condition of an experiment, and what runs a method on it, for a number of a
-    repeat.
-    """
-    job = jobs.job(study, experiment, method, "smoke", 0)
-    built = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
-    condition = job.conditions()[0]
-    problem = built[condition.problem]
-    return condition.name, lambda repeat: execution.run(job, condition, repeat, problem)
-
-
-def table(name: str, columns: Sequence[str], rows: Iterable[Row]) -> None:
-    """Print rows as they come, the first column to the left, and write them into a csv file."""
-    print(f"\n{name + ': ' + columns[0]:50}" + "".join(f"{c:>{WIDTH}}" for c in columns[1:]))
-    lines = []
-    for row in rows:
-        cells = (f"{v:,.4g}" if isinstance(v, float) else str(v) for v in row[1:])
-        print(f"  {row[0]:48}" + "".join(f"{cell:>{WIDTH}}" for cell in cells), flush=True)
-        lines.append(row)
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    pd.DataFrame(lines, columns=list(columns)).to_csv(FOLDER / f"{name}.csv", index=False)
+def _plan(plan: Callable[..., Plan], problem: Problem, settings: dict[str, Any]) -> Plan:
+    """A run with always the same random numbers."""
+    return plan(problem, np.random.default_rng(0), **settings)

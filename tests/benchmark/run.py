@@ -1,30 +1,71 @@
-"""Speed of the inner loops: `make benchmark`, or of some of its parts: `make benchmark ARGS="least
-runs"`. With the word small, each part at its smallest size.
+"""What starts, planners, bounds, claims and the page cost.
 
-A part is a module with `COLUMNS` and `rows`; its table is printed and written into
-results/benchmark.
+`make benchmark` measures it and compares it with docs/benchmark.csv, which `make benchmark
+ARGS=store` writes anew, at each release; `ARGS="grown store"` with how cost grows. Costs are CPU
+times, each as a multiple of that of a fixed piece of work beside it (`frame.fixed`), so that
+machines compare. A cost above `NAMED` times the stored one in three measurements is named; above
+`FAILS` times, the status is 1.
 """
 
-import importlib
 import sys
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 import frame
+import pandas as pd
+import parts
 
-PARTS = ("runs", "least", "simulation", "limits", "growth", "start")
+from bezierplan.places import TREE
+
+STORED, MADE = TREE / "docs" / "benchmark.csv", TREE / "results" / "benchmark.csv"
+NAMED, FAILS = 1.25, 2.0
 
 
-def main(words: list[str]) -> None:
-    small, names = "small" in words, [word for word in words if word != "small"]
-    for name in names:
-        if name not in PARTS:
-            sys.exit(f"make benchmark: ARGS: {name}: unknown; expected some of {', '.join(PARTS)}")
-    for name in names or PARTS:
-        part = importlib.import_module(name)
-        frame.table(name, part.COLUMNS, part.rows(small))
+def measured(
+    works: Iterable[tuple[str, frame.Work]], stored: Mapping[str, float]
+) -> Iterator[tuple[str, float]]:
+    """Names and costs; what seems slower than the stored cost is measured twice more."""
+    for name, work in works:
+        cost = frame.ratio(work)
+        for _ in range(2):
+            if cost > NAMED * stored.get(name, cost):
+                cost = min(cost, frame.ratio(work))
+        print(f"  {name:55}{cost:12.4g}", flush=True)
+        yield name, cost
+
+
+def judged(costs: Mapping[str, float], stored: Mapping[str, float]) -> tuple[list[str], bool]:
+    """What is slower than before, a line each, and whether that is too much."""
+    times = {name: cost / stored[name] for name, cost in costs.items() if name in stored}
+    slower = {name: each for name, each in times.items() if each > NAMED}
+    lines = [f"{name}: {each:.2f} times as long as stored" for name, each in slower.items()]
+    return lines, any(each > FAILS for each in slower.values())
+
+
+def main(words: list[str]) -> int:
+    """Measure, compare and write; the status."""
+    if unknown := {*words} - {"store", "grown"}:
+        sys.exit(f"make benchmark: ARGS: {' '.join(unknown)}: unknown; expected store or grown")
+    known = (
+        pd.read_csv(STORED, index_col="cost")["ratio"]
+        if STORED.exists()
+        else pd.Series(dtype=float)
+    )
+    compared = {} if "store" in words else known.to_dict()
+    works = [*parts.short(), *(parts.grown() if "grown" in words else ())]
+    costs = dict(measured(works, compared))
+    lines, failed = judged(costs, compared)
+    file = STORED if "store" in words else MADE
+    # What was not measured this time stays.
+    kept = {name: cost for name, cost in known.items() if name.startswith(parts.GROWN)}
+    table = pd.Series(kept | costs, name="ratio").rename_axis("cost")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    table.to_csv(file, float_format="%.4g")
+    print(*lines or ["nothing is slower than stored"], file.relative_to(TREE), sep="\n")
+    return int(failed)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))
