@@ -51,7 +51,14 @@ NUMBERS[1]["value_ours_scaled"] = 14.0
 NUMBERS[2]["why"] = "interval without an end on that side"
 
 CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
-CLAIM |= {"own_criterion": False, "main": False, "place": "IV, Table I", "holds": "1 of 2", "n": 10}
+CLAIM |= {
+    "own_criterion": False,
+    "main": False,
+    "readings": "",
+    "place": "IV, Table I",
+    "holds": "1 of 2",
+    "n": 10,
+}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
 CLAIMS = [

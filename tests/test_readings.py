@@ -236,9 +236,11 @@ def test_where_no_reading_fits_all_that_nothing_excludes_count():
 
 def test_a_claim_depends_on_a_variant_with_any_other_verdict():
     claims = CLAIMS.assign(verdict=["supported", "partly", "supported", "undecided"])
-    found = by_reading.told(claims, pd.DataFrame(), pd.DataFrame())
+    found = by_reading.told(
+        claims, pd.DataFrame(), pd.DataFrame(), {"metric=length": "metric length"}
+    )
     assert [*found["verdict"]] == ["depends", "partly", "supported", "undecided"]
-    assert found["reason"][0] == "supported by default, partly with metric=length; why"
+    assert found["reason"][0] == "supported by default, partly with metric length; why"
     assert {*found["readings"]} == {""}
 
 
