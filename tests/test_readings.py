@@ -212,7 +212,7 @@ TURNED = table_of(id="C1", reading=["default", "O1=2", "O2=3", "O3=4"])
             ["undecided", "contradicted", "supported", "supported"],
             "depends",
             "0 of 2",
-            "supported by default, contradicted with How fast: 2 (O1 = 2); why",
+            "supported by default, contradicted with O1 = 2 (How fast: 2); why",
         ),
     ],
 )

@@ -54,7 +54,8 @@ def judged(job: Any, *material: Any) -> pd.DataFrame:
     """
     claims, checks = judge.judge(job, *material)
     missing = {*checks.loc[checks["n"] == 0, "id"]}
-    return claims.loc[~claims["id"].isin(missing), ["id", "verdict"]]
+    tested = ~claims["id"].isin(missing) & (claims["verdict"] != "untestable")
+    return claims.loc[tested, ["id", "verdict"]]
 
 
 def told(
@@ -104,7 +105,7 @@ def _turned(verdict: str, own: pd.Series, meanings: pd.Series) -> list[str]:
     turned = own[own.isin(SIDES) & (own.map(SIDES) != SIDES[verdict])]
     words = []
     for other, names in turned.groupby(turned, sort=False).groups.items():
-        named = [f"{meanings[each]} ({each.replace('=', ' = ')})" for each in names]
+        named = [f"{each.replace('=', ' = ')} ({meanings[each]})" for each in names]
         words.append(f"{other} with {_named(named, 'readings')}")
     return words
 
