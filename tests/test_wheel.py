@@ -114,12 +114,9 @@ def test_the_core_plans_by_a_paper_s_method_and_says_what_it_lacks(away):
     said = shell(away, f"bezierplan plan gaps {words} --out path.svg", place, core=True)
     assert "feasible        yes" in said
     assert (place / "path.svg").read_text().startswith("<?xml")
-    method = "--method song2016/smooth --settings '{generations: 5}'"
+    method = "--method song2016/smooth"
     said = shell(away, f"bezierplan plan gaps {words} {method}", place, core=True, status=2)
     assert "the map is polygons; read it with a cell" in said
-    cells = "--start 0.5,0.5 --target 15.5,15.5"
-    said = shell(away, f"bezierplan plan figure2 {cells} {method}; true", place, core=True)
-    assert "song2016/smooth" in said
     said = shell(away, "bezierplan digest results", place, core=True, status=2)
     assert said == (
         "digest: needs pyarrow, which is not installed; install it with: pip install "
