@@ -191,7 +191,7 @@ class TableOfRuns(Job):
             self.reconstructed,
             self.votes,
         )
-        table = tables.pivot(runs, self.spec, self.labels)
+        table = tables.pivot(runs, self.spec, self.labels, published)
         table.to_csv(output_files.table, lineterminator="\n")
         if self.spec.printed:
             compared = compared[compared["value_published"].notna()]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, possible, statistics
 from bezierplan.analysis.results import Results, repeated, select
 from bezierplan.analysis.table_kinds import Pivot
 
@@ -175,19 +175,24 @@ def laid(
     return pd.DataFrame(table, rows, columns)
 
 
-def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
+def pivot(
+    results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame | None = None
+) -> pd.DataFrame:
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
-    labels: how names are printed. Column levels are joined into one name, such as `objective value:
-    smooth`; index levels stay columns of the csv file. A column of a table of the paper's form has
-    the decimals of the printed one, or as many as its smallest number needs for `SIGNIFICANT`
-    digits; in any other table, where some runs have no value, a column beside the values says how
-    many have one (`_with_counts`).
+    labels: how names are printed. published: as from `comparison.read_published`. Column levels are
+    joined into one name, such as `objective value: smooth`; index levels stay columns of the csv
+    file. A column of a table of the paper's form has the decimals of the printed one, or as many as
+    its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
+    value, a column beside the values says how many have one (`_with_counts`).
     """
     table = placed(cells(results, spec, spec.key_columns), spec, list(results.problems))
     values = [statistics.statistic(*each) for each in zip(table["statistic"], table["numbers"])]
     decimals = table["decimals"]
-    if spec.printed:
+    if spec.printed and published is not None:
+        digits = published["as_printed"].map(possible.decimals)
+        usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
+        decimals = table["metric"].map(usual).fillna(decimals).astype(int)
         counted = table["statistic"] == "count"
         needed = map(_decimals, values, decimals, counted)
         decimals = pd.Series([*needed], table.index).groupby(table["table_column"]).transform("max")
