@@ -18,7 +18,7 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help reproduce smoke beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
+.PHONY: help reproduce smoke smoke-digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-19s %s\n", $$1, $$2 }'
@@ -30,6 +30,9 @@ reproduce: .venv/ready ## every table and figure of the papers, their claims, wi
 smoke: .venv/ready ## the same with few runs, into results/smoke
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke $(ARGS)
+
+smoke-digests: smoke ## keep the digests of its tables and claims, which `make test` compares; the commit says why they change
+	$(RUN) tests/smoke.py
 
 beyond: .venv/ready ## what goes beyond the papers: variants, baselines, profiles, our own measures and maps; and the page with it
 	@$(UNLOCK)

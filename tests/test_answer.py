@@ -53,6 +53,8 @@ LIES = {
         path(LINE - [[0, 0], [1, 0]]),
         "path: target: (8.0, 5.0); expected exactly (9.0, 5.0)",
     ),
+    "begins above": (path(LINE + np.array([[0, 1e-12], [0, 0]])), "path: start: "),
+    "ends above": (path(LINE + np.array([[0, 0], [0, 1e-12]])), "path: target: "),
     "backwards": (path(LINE[::-1]), "path: start: "),
     "points not numbers": (path(LINE * np.nan), "path: points: expected finite numbers"),
     "points infinite": (path(LINE * np.inf), "path: points: expected finite numbers"),
@@ -109,6 +111,14 @@ LIES = {
     "history with a gap": (
         PLAN._replace(history=np.array([np.nan, 8.0])),
         "history: expected an array of numbers without nan",
+    ),
+    "history that rises": (
+        PLAN._replace(history=np.array([7.0, 8.0])),
+        "history: rises; expected the best objective so far",
+    ),
+    "history of another path": (
+        PLAN._replace(history=np.array([9.0, 7.0])),
+        "objective: 8.0; expected the last of history, 7.0, or keeps_best = False",
     ),
     "stop of two lines": (PLAN._replace(stop="a\nb"), "stop: expected a word"),
     "stop None": (PLAN._replace(stop=None), "stop: expected a word"),

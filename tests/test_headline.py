@@ -67,6 +67,15 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
     assert found.methods.loc["one"].to_list() == ["90 %", "0.5 ×", "12 ×", "3 ×"]
 
 
+def test_findings_of_ours_and_other_interpretations_do_not_count():
+    own = claims(one=["supported", "contradicted", "contradicted"])
+    own["finding"], own["primary"] = [False, True, False], [True, True, False]
+    printed = numbers(("one", "agrees", 1.0, 1.0, {}), ("one", "disagrees", 1.0, 9.0, {}))
+    counts = headline.outcome(printed.assign(counted=[True, False]), own).loc["one"]
+    assert (counts["numbers"], counts["agrees"], counts["disagrees"]) == (1, 1, 0)
+    assert (counts["supported"], counts["contradicted"]) == (1, 0)
+
+
 @pytest.mark.parametrize(
     ("verdicts", "word"),
     [

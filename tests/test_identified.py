@@ -67,12 +67,24 @@ def test_a_length_of_no_path_is_not_identified():
     assert math.isnan(own.length)
 
 
+@pytest.mark.parametrize(("printed", "named"), [(28.2, False), (28.3, True), (28.4, False)])
+def test_a_length_is_named_if_it_rounds_to_the_printed_one(printed, named):
+    """Of the diagonal, 28.284..., with one digit."""
+    assert bool(found(OPEN, 0, 8, printed, decimals=1, edges=1).paths) == named
+
+
 def test_chance_is_the_share_of_numbers_nearby():
     assert found(OPEN, 0, 8, 28.2843, edges=1).chance == pytest.approx(1 / 10001, rel=0.01)
 
 
 def test_ends_beside_the_centres_are_not_tried():
     assert identified.in_problem(Problem("", OPEN, (0.0, 0.0), (25.0, 25.0)), 28.2843, 4, 3) is None
+
+
+def test_a_length_has_the_chance_of_the_printed_numbers_to_which_it_rounds():
+    lengths = np.array([9.996, 10.004, 10.026])  # as 10.00, 10.00 and 10.03
+    numbers = 2 * round(identified.NEARBY / 0.01) + 1
+    assert identified._chance(lengths, 10.0, 0.005) == pytest.approx(2 / numbers)
 
 
 def test_chance_of_as_many():

@@ -5,6 +5,7 @@ them.
 import numpy as np
 import pandas as pd
 import pytest
+from pivots import pivot_of
 from studies import built, studies
 
 from bezierplan.analysis import fit, outcome, readings
@@ -67,6 +68,40 @@ def test_densities_are_densities_of_relative_errors_and_of_counts():
     ours = fit.Moments(10 * (1 - errors), *(np.full(len(errors), value) for value in (1, 1, 0.25)))
     found = np.exp(fit._of_means(means, means.printed, ours))
     assert np.trapezoid(found, errors) == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("variance", "size", "units", "share", "step", "error"),
+    [
+        (0, 1, 1e9, 1, 0.6, 0.6 / np.sqrt(12)),  # of rounding, uniform
+        (4, 4, 16, 1, 1e-9, np.sqrt(4 / 4 + 4 / 16)),  # of both means
+        (4, 8, 16, 0.5, 1e-9, np.sqrt(4 / 4 + 4 / 16)),  # of the runs that count
+    ],
+)
+def test_the_error_of_a_printed_mean(variance, size, units, share, step, error, monkeypatch):
+    """In closed form: the density of Student's t at 0 is 3/8 where its scale is 1."""
+    monkeypatch.setattr(fit, "DISCREPANCY", 0.0)
+    number = of_kind([10.0], size)._replace(step=np.array([step]))
+    ours = fit.Moments(*(np.array([each]) for each in (10.0, units, share, variance)))
+    density = np.exp(fit._of_means(number, number.printed, ours))
+    assert density == pytest.approx(3 / 8 / (error / 10))
+
+
+def test_a_count_far_from_ours_has_the_density_of_any():
+    count = of_kind([100], 100, counts=True)
+    ours = fit.Moments(*(np.array([each]) for each in (0.0, 100, 1, np.nan)))
+    assert np.exp(fit._of_counts(count, count.printed, ours)) == pytest.approx(0.05 / 101, rel=1e-6)
+
+
+def test_printed_shares_vote_as_counts(tmp_path):
+    file = tmp_path / "shares.csv"
+    file.write_text("method,metric,statistic,n,unit,value\nmine,feasible,share,20,-,0.95\n")
+    value = {"metric": "feasible", "statistic": "share", "label": "free", "decimals": 2}
+    spec = pivot_of({"index": ["method"], "columns": ["value"], "values": [value]})
+    tables = {"table1": spec.but(published="shares.csv")}
+    (found,) = readings.quantities(tables, {"table1": {"feasible": {}}}, {"shares": str(file)})
+    assert found.statistic == "count"
+    assert found.printed[["value", "n", "votes"]].to_numpy().tolist() == [[19, 20, True]]
 
 
 def test_moments_are_those_of_the_chosen_units_that_have_a_value():

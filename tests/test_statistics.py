@@ -243,6 +243,7 @@ def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, thei
         (6.0, (3.0, math.inf), (-math.inf, math.inf), False),
         (6.0, (3.0, 9.0), (0.0, 9.0), False),
         (5.0, (-math.inf, 9.0), (-math.inf, math.inf), True),
+        (5.0, (3.0, math.inf), (-math.inf, math.inf), True),
         (5.0, (-math.inf, math.inf), (-math.inf, math.inf), False),
     ],
 )

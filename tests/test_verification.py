@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 from studies import studies
 
 from bezierplan import __main__
@@ -38,6 +39,22 @@ def test_a_difference_beyond_chance_is_found_and_named():
     found = verification.compared(rows([1.0, 2.0, 3.0]), rows([1.1, 2.0, 5.0]))
     assert verification.failed(found)["method"].tolist() == ["m2"]
     assert found["p"][0] > 0.5
+
+
+@pytest.mark.parametrize(("p", "fails"), [(0.0049, True), (0.0051, False)])
+def test_two_numbers_share_the_rate_of_one_percent(p, fails):
+    numbers = pd.DataFrame({"p": [p, 0.5, np.nan]})
+    assert len(verification.failed(numbers)) == fails
+
+
+def test_p_is_that_of_welch_s_t_for_means():
+    """Of two samples of 10 with standard errors 3 and 4: the difference 10 is 2 of its errors."""
+    errors = (3 * np.sqrt(0.9), 4 * np.sqrt(0.9))  # a bootstrap's are smaller
+    widths = [np.array([2 * stats.norm.ppf(0.975) * each]) for each in errors]
+    values = [np.array([0.0]), np.array([10.0])]
+    (p,) = verification.p_values(values, widths, [np.array([10]), np.array([20])])
+    own = np.hypot(3, 4 * np.sqrt(0.9 / 0.95))
+    assert p == pytest.approx(2 * stats.t.sf(10 / own, 9))
 
 
 def test_numbers_that_no_chance_decides_must_be_equal():

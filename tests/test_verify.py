@@ -422,6 +422,7 @@ def test_runs_and_drives_are_sound_and_can_be_made_again(each):
     verdict = recheck.verify([each], 1, print)
     assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
     assert recheck.made_again([each], 1, verdict.digest, every=True) == (4, [])
+    assert recheck.made_again([each], 1, verdict.digest, every=False) == (1, []), "the first"
 
 
 EDITS: dict[tuple[str, str, str], Callable] = {

@@ -133,6 +133,37 @@ def test_columns_of_few_methods_and_few_runs_are_no_wholes(ours):
     assert judged(results(np.ones((5, 5))), TRUE).empty
 
 
+@pytest.mark.parametrize(
+    ("printed", "chance", "in_range"),
+    [(0, 0.02, False), (1, 0.04, False), (5, 0.12, True), (50, 1, True), (97.5, 0.06, True)],
+)
+def test_chance_is_the_share_that_lies_as_far_out_on_both_sides(printed, chance, in_range):
+    """Beside the experiments 1, 2, ... 99; the printed one is one of them."""
+    found = wholes._placed("level", np.array([printed, *range(1, 100)]), 0.025)
+    assert found["chance"] == pytest.approx(chance)
+    assert found["in_range"] == in_range
+    assert [found[end] for end in ("low95_predicted", "ours", "high95_predicted")] == (
+        pytest.approx([1 + 0.025 * 98, 50, 99 - 0.025 * 98])
+    )
+
+
+def test_chance_of_deviations_is_the_share_of_experiments_with_as_large_ones():
+    """Experiments deviate by -50, ... 50 of a direction, the printed means by 48.5 of it."""
+    sizes = np.array([48.5, *range(-50, 0), *range(1, 51)])
+    means = 7 + np.outer(sizes, [3.0, -3.0, 1.0, -1.0])
+    every, others = wholes._deviations(means, np.array(list("abcd")), 0.025)
+    assert every["chance"] == pytest.approx(5 / 101)
+    assert (every["printed"], every["outside"], every["methods"]) == (4, "a, b, c, d", 4)
+    assert not every["in_range"]
+    assert (others["quantity"], others["methods"]) == ("deviations of the others", 3)
+
+
+def test_level_and_spread_are_mean_and_sample_deviation(ours):
+    found = judged(ours, TRUE)["printed"]
+    assert found["level"] == pytest.approx(TRUE.mean())
+    assert found["spread"] == pytest.approx(TRUE.std(ddof=1))
+
+
 def test_rank_correlation():
     first, second, third = np.round(np.random.default_rng(4).normal(size=(3, 8)), 0)
     found = wholes.rank_correlations(np.array([first, second, np.ones(8)]), third)
