@@ -2,6 +2,7 @@
 degenerate cases, settings.
 """
 
+import math
 from functools import partial
 
 import numpy as np
@@ -77,6 +78,42 @@ def test_reach_is_a_share_of_the_smaller_side(monkeypatch):
         wide = Grid(np.zeros((rows, columns), dtype=bool), 1.0, "cell")
         plan(Problem("test", wide, (0.5, 0.5), (50.5, 50.5)), reach=0.1, spread=0.025)
     assert colonies == [(10.0, 2.5)] * 3
+
+
+def test_cut_short_goes_to_the_last_point_in_sight():
+    occupied = np.zeros((20, 20), dtype=bool)
+    occupied[5:, 10] = True
+    path = np.array(
+        [
+            [1.5, 15.5],
+            [3.5, 12.5],
+            [5.5, 9.5],
+            [9.5, 4.5],
+            [10.5, 3.5],
+            [12.5, 5.5],
+            [14.5, 10.5],
+            [17.5, 15.5],
+        ]
+    )
+    assert abc_ep._cut_short(occupied, path).tolist() == [[1.5, 15.5], [10.5, 3.5], [17.5, 15.5]]
+
+
+def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
+    occupied = np.zeros((50, 50), dtype=bool)
+    occupied[10, 20] = True
+    path = np.array([[0.5, 0.5], [8.5, 6.5], [10.5, 10.5], [0.0, 0.0]])
+    target = np.array([40.5, 40.5])
+    point = np.array([13.9, 14.1])
+    colony = settings(reach=10.0)
+    # The cones have their height in the middle of the point's cell.
+    cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(
+        0, 10 - math.dist((10.5, 10.5), (13.5, 14.5))
+    )
+    expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
+    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(
+        expected, rel=1e-12
+    )
+    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
 
 
 def colony_of(places, costs, monkeypatch, cycles):
