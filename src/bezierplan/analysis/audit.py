@@ -7,8 +7,8 @@ rules that hold for any paper: how the number was checked).
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
 (`metrics.Metric`): `of_cells` checks the statistics of one cell, `of_ranks` mean ranks, `of_orders`
-the order of rows and their straight lines, `of_middles` means within their ranges, `of_digits` the
-decimals of all numbers. `analysis.possible` has the closed forms.
+the order of rows, `of_middles` means of lengths within their ranges, `of_digits` all decimals.
+`analysis.possible` has the closed forms.
 """
 
 import itertools
@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
-from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place
+from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place, together
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Monotone, Pivot
@@ -43,17 +43,11 @@ _LEAST_SPREAD = 10
 then each digit is about equally likely, whatever is measured.
 """
 
-_ROUNDING = 1e-9
-"""Scatter that is none."""
-
-LEAST_FREEDOM = 5
-"""Degrees of freedom about straight lines."""
-
 LEVEL = 0.05
 """Of Friedman's test."""
 
 LEAST_MEANS = 5
-"""Means beside minimum and maximum that a table needs."""
+"""Means beside minimum and maximum that a paper needs."""
 
 DRAWN = 2000
 """Sets of normal numbers from which the distribution of means within their ranges is drawn."""
@@ -128,7 +122,7 @@ def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> li
         rows += of_ranks(name, table, specs[name].across)
         for rule in specs[name].monotone:
             rows += of_orders(name, table, rule)
-    return [*rows, *of_middles(tables), *of_digits(tables)]
+    return [*together(rows), *of_middles(tables), *of_digits(tables)]
 
 
 def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
@@ -233,18 +227,24 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
             yield checked(item, of_row, rule, row["value"], limit, fits, told)
         sizes = group["n"].unique()
         if possible.are_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
-            apart, critical, chi_square, p = friedman(group["value"].to_numpy(), int(sizes[0]))
-            rule = "the mean ranks tell rows apart: Friedman's test from the ranks and n, at 5 %"
+            n = int(sizes[0])
+            apart, critical, chi_square, p, least = friedman(group["value"].to_numpy(), n)
+            rule = (
+                f"the mean ranks tell rows apart: Friedman's test from the ranks, if of {n} runs, "
+                "at 5 %"
+            )
             told = (
                 f"chi-square {chi_square:.3g} with {count - 1} degrees of freedom, p = {p:.2g}; "
-                f"the largest difference is {apart:.2g}, the critical one {critical:.3g}"
+                f"the largest difference is {apart:.2g}, the critical one {critical:.3g}; "
+                f"p is below {LEVEL:g} from {least} runs on"
             )
             yield checked(item, location, rule, apart, critical, bool(p < LEVEL), told)
 
 
-def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float]:
+def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:
     """The largest difference of mean ranks (k,) of n units, the critical one of Nemenyi, and
-    Friedman's chi-square with its p, without ties.
+    Friedman's chi-square with its p, without ties; and the least number of units with which the
+    same ranks would differ.
 
     Source: Demšar (2006), "Statistical comparisons of classifiers over multiple data sets", Journal
     of Machine Learning Research 7, 1.
@@ -255,13 +255,13 @@ def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float]:
     chi_square = 12 * n / (k * (k + 1)) * float(((ranks - (k + 1) / 2) ** 2).sum())
     quantile = float(stats.studentized_range.ppf(1 - LEVEL, k, np.inf)) / math.sqrt(2)
     critical = quantile * math.sqrt(k * (k + 1) / (6 * n))
-    return float(np.ptp(ranks)), critical, chi_square, float(stats.chi2.sf(chi_square, k - 1))
+    p = float(stats.chi2.sf(chi_square, k - 1))
+    least = math.ceil(n * stats.chi2.isf(LEVEL, k - 1) / chi_square) if chi_square else math.inf
+    return float(np.ptp(ranks)), critical, chi_square, p, least
 
 
 def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
-    """Numbers that must rise or fall along a column: each beside the one before it, and all about
-    straight lines.
-    """
+    """Numbers that must rise or fall along a column, each beside the one before it."""
     numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
     keys = _keys(table)
     others = [key for key in keys if key != rule.along]
@@ -275,67 +275,37 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
             where = place(row, [*keys, "metric", "statistic"])
             told = f"{before['printed']} {sign} {row['printed']}"
             yield checked(item, where, words, row["value"], before["value"], fits, told)
-    wide = numbers.pivot_table("value", others or ["metric"], rule.along).dropna()
-    where = f"metric={rule.metric}, statistic={rule.statistic}, all "
-    yield from _of_trend(item, f"{where}numbers", wide, rule)
-    if (count := len(wide)) > 1:
-        steps = np.diff(wide if rule.direction == "up" else -wide)
-        kept = int((steps > 0).all(axis=1).sum())
-        chance = identified.at_least(kept, [1 / math.factorial(wide.shape[1])] * count)
-        told = f"{kept} of {count} rows without an exception; the chance of as many, if all orders "
-        told += f"were equally likely: {chance:.2g}"
-        fits = True if kept == count else None
-        yield checked(item, f"{where}rows", words, kept, count, fits, told)
-
-
-def _of_trend(item: str, where: str, wide: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
-    """How far the farthest number lies from the straight line of its row, in standard deviations of
-    all about their lines, beside that of sets of normal numbers.
-
-    wide: numbers of a column that orders them, a row each; they are taken as shares of the mean of
-    their row.
-    """
-    count, size = wide.shape
-    if (freedom := count * (size - 2)) < LEAST_FREEDOM:
-        return
-    line = np.vander(wide.columns.to_numpy(dtype=float), 2)
-    printed = wide.div(wide.mean(axis=1), axis=0).to_numpy()
-    drawn = generator(f"audit/trends/{count}/{size}").normal(size=(DRAWN, count, size))
-    off = np.concatenate([printed[None], drawn]) @ (np.eye(size) - line @ np.linalg.pinv(line))
-    scatter = np.sqrt(np.sum(off**2, axis=(1, 2)) / freedom)
-    farthest, *sets = np.abs(off).max(axis=(1, 2)) / np.maximum(scatter, _ROUNDING)
-    p = float(np.mean(np.array(sets) >= farthest))
-    words = f"{rule.metric} lies about straight lines along {rule.along} as normal numbers do"
-    told = (
-        f"standard deviation {100 * scatter[0]:.2g} % of the mean, {freedom} degrees of freedom; "
-        f"the farthest number {farthest:.3g} of these away; p = {p:.2g}"
-    )
-    limit = np.quantile(sets, 1 - DIGITS_LEVEL)
-    yield checked(item, where, words, farthest, limit, p >= DIGITS_LEVEL, told)
 
 
 def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Where means lie between minimum and maximum: the root mean square distance from the middle,
-    in ranges, beside that of as many sets of normal numbers.
+    """Where means of lengths lie between minimum and maximum: the root mean square distance from
+    the middle, in ranges, beside that of as many sets of normal numbers.
 
     Numbers with a tail lie farther from the middle than normal ones.
     """
-    for item, table in tables.items():
-        keys = [*_keys(table), "metric", "n"]
-        wide = table.reindex(columns=[*keys, "statistic", "value"])
-        wide = wide.pivot_table("value", keys, "statistic").reindex(columns=["min", "mean", "max"])
-        sizes = (wide := wide.dropna()).index.unique("n")
-        if len(wide) < LEAST_MEANS or len(sizes) > 1 or sizes[0] < 2:
+    lengths = [
+        table[table["metric"].isin(AT_LEAST_A_LENGTH)].assign(item=name)
+        for name, table in tables.items()
+    ]
+    every = pd.concat(lengths) if lengths else pd.DataFrame(columns=["n"])
+    keys = [column for column in every if column not in ("statistic", "value", "printed", "unit")]
+    for n, own in every.groupby("n"):
+        filled = own.assign(**{key: own[key].astype(str) for key in keys})
+        wide = filled.pivot_table("value", keys, "statistic").reindex(
+            columns=["min", "mean", "max"]
+        )
+        wide = wide.dropna()
+        if len(wide) < LEAST_MEANS or n < 2:
             continue
-        n, count = int(sizes[0]), len(wide)
-        apart = float(_from_middle(*wide.to_numpy().T))
-        drawn = generator(f"audit/middles/{n}").normal(size=(DRAWN, count, n))
+        apart, count = float(_from_middle(*wide.to_numpy().T)), len(wide)
+        drawn = generator(f"audit/middles/{n:g}").normal(size=(DRAWN, count, int(n)))
         sets = _from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
-        p = float(np.mean(sets <= apart))
-        rule = f"means of {n} values lie as far from the middle of their range as normal ones do"
-        told = f"{apart:.3g} ranges, normal ones {np.median(sets):.3g}; p = {p:.2g}"
-        where, median = f"{count} means", float(np.median(sets))
-        yield checked(item, where, rule, apart, median, p >= DIGITS_LEVEL, told)
+        p, median = float(np.mean(sets <= apart)), float(np.median(sets))
+        rule = f"means of {n:g} lengths lie as far from the middle of their range as normal ones do"
+        told = f"{apart:.3g} ranges, normal ones {median:.3g}; p = {p:.2g}"
+        where = f"{count} means between minimum and maximum"
+        items = ", ".join(wide.index.unique("item"))
+        yield checked(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
 
 
 def _from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:

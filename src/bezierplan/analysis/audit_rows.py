@@ -38,6 +38,24 @@ def checked(
     return dict(zip(COLUMNS[1:], values, strict=True))
 
 
+def together(rows: Iterable[dict]) -> list[dict]:
+    """Rows with those of a rule that several numbers obey as one, which says how many they are."""
+    by_rule: dict[str, list[dict]] = {}
+    for row in rows:
+        by_rule.setdefault(row["rule"], []).append(row)
+    return [row for rule, own in by_rule.items() for row in _of_rule(rule, own)]
+
+
+def _of_rule(rule: str, rows: list[dict]) -> list[dict]:
+    obeyed = [row for row in rows if row["consistent"] is True]
+    if len(obeyed) < 2:
+        return rows
+    items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))
+    count, every = len(obeyed), len(rows)
+    row = checked(items, f"{count} of {every} numbers", rule, count, every, True)
+    return [*(other for other in rows if other["consistent"] is not True), row]
+
+
 def compared(
     item: str, location: str, rule: str, printed: float, relation: str, limit: float
 ) -> dict:

@@ -16,21 +16,23 @@ import re
 
 import pandas as pd
 
-from bezierplan.analysis.audit_rows import compared
+from bezierplan.analysis.audit_rows import compared, together
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """The rows of the audit. published: tables of printed numbers, by file name, with the rules."""
     rules = published["rules"].fillna({"cell": "", "of": "", "limit": 1.0})
-    return [
+    return together(
         compared(
-            *(rule.item, rule.place, rule.rule),
+            rule.item,
+            rule.place,
+            rule.rule,
             _total(published, rule.item, rule.cell or rule.place),
             rule.relation,
             rule.limit * (_total(published, rule.item, rule.of) if rule.of else 1),
         )
         for rule in rules.itertuples()
-    ]
+    )
 
 
 def _total(published: dict[str, pd.DataFrame], item: str, cell: str) -> float:

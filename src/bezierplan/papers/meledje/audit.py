@@ -47,6 +47,7 @@ def audit(published: "Published") -> list[dict]:
             rows += _fisher_rows(
                 tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best]
             )
+            rows.append(_pooled_row(tables, trials, sentence.quantity, sentence.words))
     pairs = list(itertools.combinations(operators, 2))
     for metric, words in RANKED.items():
         for name in ("table3", "table4", "table5"):
@@ -95,6 +96,39 @@ def _fisher_rows(
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
     ]
+
+
+def _pooled_row(
+    tables: dict[str, pd.Series], trials: dict[str, int], metric: str, words: str
+) -> dict:
+    """Whether the proposed mutation's counts of all maps together differ from those of ref12 by
+    more than chance: the test of Cochran, Mantel and Haenszel with its correction for
+    continuity, a map a stratum.
+    """
+    from scipy import stats
+
+    own, theirs, size = np.array(
+        [
+            [table["proposed", metric], table["ref12", metric], trials[name]]
+            for name, table in tables.items()
+        ]
+    ).T
+    both = own + theirs
+    apart = float((own - both / 2).sum())
+    variance = float((both * (2 * size - both) / (4 * (2 * size - 1))).sum())
+    chi_square = max(abs(apart) - 0.5, 0.0) ** 2 / variance
+    p = float(stats.chi2.sf(chi_square, 1))
+    told = (
+        f"{own.sum():.0f} against {theirs.sum():.0f} of {size.sum():.0f}; chi-square "
+        f"{chi_square:.2g}, p = {p:.2g}"
+    )
+    rule = (
+        f"over all maps the proposed mutation has as often the {words} as ref12, but for chance: p "
+        "of the test of Cochran, Mantel and Haenszel"
+    )
+    return checked(
+        ", ".join(tables), f"metric={metric}, all maps", rule, p, ALPHA, bool(p >= ALPHA), told
+    )
 
 
 def holm(p: np.ndarray) -> np.ndarray:
