@@ -54,11 +54,14 @@ class Moments(NamedTuple):
 
 
 def p_of_fit(groups: list[Numbers], rng: np.random.Generator) -> float:
-    """The chance that experiments under our model fit it as badly as the paper's numbers do."""
+    """The chance that experiments under our model fit it as badly as the paper's numbers do; none
+    below one in `EXPERIMENTS` can be told.
+    """
     from scipy import stats
 
     chances = [_p_of_group(each, rng) for each in groups]
-    return float(stats.combine_pvalues(chances, method="fisher").pvalue)
+    joined = float(stats.combine_pvalues(chances, method="fisher").pvalue)
+    return max(joined, 1 / (1 + EXPERIMENTS))
 
 
 def _p_of_group(numbers: Numbers, rng: np.random.Generator) -> float:
