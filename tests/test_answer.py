@@ -9,11 +9,10 @@ import pytest
 
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
-from bezierplan.running import execution, planning, problems
+from bezierplan.running import answer, execution, planning, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import plain
-from bezierplan.running.judge import answer
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
 

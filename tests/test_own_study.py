@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 import starts
 
-from bezierplan.running.judge import recheck
+from bezierplan.running import recheck
 from bezierplan.study import reading, stored
 
 ROOT = Path(__file__).parents[1]

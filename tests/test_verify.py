@@ -21,9 +21,8 @@ from bezierplan.__main__ import main
 from bezierplan.analysis import proof
 from bezierplan.machine import digest
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems, rows
+from bezierplan.running import execution, problems, recheck, rows
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.running.judge import recheck
 from bezierplan.study import stored
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem

@@ -22,9 +22,9 @@ from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import planning
 from bezierplan.running import problems as problem_files
+from bezierplan.running.answer import path_of
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.running.judge.answer import path_of
 from bezierplan.schema.checked import check_all, check_known, closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
@@ -259,11 +259,17 @@ def read_map(
     ValueError
         Names file, place and what is expected.
     """
-    options = locals()
-    source, radius = File(options.pop("file")), options.pop("robot_radius")
-    return map_files.read(
-        source, map_files.described(source, **options, cells=cell is not None), radius
+    described = map_files.described(
+        File(file),
+        cells=cell is not None,
+        cell=cell,
+        rule=rule,
+        unit=unit,
+        margin=margin,
+        resolution=resolution,
+        unknown=unknown,
     )
+    return map_files.read(File(file), described, robot_radius)
 
 
 def example_map(name: str) -> File:

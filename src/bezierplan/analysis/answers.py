@@ -12,7 +12,7 @@ from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import planning
-from bezierplan.running.judge.answer import restored
+from bezierplan.running.answer import restored
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grown import grown_of
 from bezierplan.workspaces.problem import Path, Problem

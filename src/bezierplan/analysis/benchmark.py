@@ -12,7 +12,7 @@ from bezierplan.analysis.results import of_folder
 from bezierplan.geometry import shortest_paths
 from bezierplan.places import TREE
 from bezierplan.planners import Plan
-from bezierplan.running.judge.answer import accepted
+from bezierplan.running.answer import accepted
 from bezierplan.schema.checked import check_all
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem

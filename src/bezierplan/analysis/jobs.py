@@ -144,7 +144,7 @@ class Judgement(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the runs."""
-        from bezierplan.running.judge import recheck
+        from bezierplan.running import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
         verdict = recheck.judged(recheck.Task(input_files.problems[0], files, {}))
@@ -421,7 +421,7 @@ class Verification(Job):
         """List the files."""
         import json
 
-        from bezierplan.running.judge import recheck
+        from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
         verdict = recheck.merged(

@@ -10,7 +10,7 @@ from typing import Any
 
 from bezierplan.places import TREE
 from bezierplan.running import rows
-from bezierplan.running.judge.recheck import Difference, sha256
+from bezierplan.running.recheck import Difference, sha256
 
 LIST = "verified.json"
 """The file that lists the digests of all others."""

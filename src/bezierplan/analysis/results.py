@@ -8,13 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from bezierplan.running import answer, worlds
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
-from bezierplan.running import worlds
 from bezierplan.running.chunk import Chunk, chunk_files
 from bezierplan.running.columns import TABLES
 from bezierplan.running.inputs import Files, by_table
-from bezierplan.running.judge import answer
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World

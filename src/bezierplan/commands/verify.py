@@ -59,7 +59,7 @@ def from_runs(
     folder: Path, names: Sequence[str], processes: int, every: bool
 ) -> tuple[list[str], bool]:
     """What is to be said of results that are made again, and whether they are sound."""
-    from bezierplan.running.judge import recheck
+    from bezierplan.running import recheck
     from bezierplan.study import stored
 
     def progress(line: str) -> None:

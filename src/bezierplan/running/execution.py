@@ -14,7 +14,7 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import is_file
-from bezierplan.running import rides, rows
+from bezierplan.running import answer, rides, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import (
     TAKEN,
@@ -26,7 +26,6 @@ from bezierplan.running.columns import (
 )
 from bezierplan.running.guard import interface, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, begin
-from bezierplan.running.judge import answer
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces import seeds

@@ -11,10 +11,9 @@ import numpy as np
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Plan
-from bezierplan.running import problems
+from bezierplan.running import answer, problems
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
-from bezierplan.running.judge import answer
 from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 

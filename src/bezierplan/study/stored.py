@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running.judge.recheck import Task
+from bezierplan.running.recheck import Task
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import jobs

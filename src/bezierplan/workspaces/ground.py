@@ -87,11 +87,10 @@ def _ground(
     bare = Ground(
         cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0))
     )
-    return (
-        bare._replace(**dict(zip(("encounters", "energy"), _tables(bare))))
-        if cells.size <= table_cells
-        else bare
-    )
+    if cells.size > table_cells:
+        return bare
+    encounters, energy = _tables(bare)
+    return bare._replace(encounters=encounters, energy=energy)
 
 
 @compiled

@@ -16,10 +16,10 @@ import numpy as np
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, is_file, known_planners
+from bezierplan.running import answer
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.running.judge import answer
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines

@@ -21,6 +21,7 @@ import numpy as np
 from bezierplan.machine.digest import covers
 from bezierplan.places import PACKAGE, cache_folder
 from bezierplan.planners import Plan, planner_module
+from bezierplan.running import answer
 from bezierplan.running.guard import plain
 from bezierplan.running.jobs.log import account
 from bezierplan.running.jobs.watchdog import (
@@ -29,7 +30,6 @@ from bezierplan.running.jobs.watchdog import (
     cpu_time,
     end_with_parent,
 )
-from bezierplan.running.judge import answer
 from bezierplan.running.simulation import robot
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.words import told

@@ -39,7 +39,7 @@ FIRST = (
 # What later jobs import, in the order in which they need it.
 LATER = (
     "bezierplan.geometry.arc_length",
-    "bezierplan.running.judge.recheck",
+    "bezierplan.running.recheck",
     "shapely",
     "bezierplan.analysis.claims.judge",
     "scipy.stats",

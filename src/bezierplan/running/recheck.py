@@ -22,11 +22,10 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.running import execution, problems, rows, worlds
+from bezierplan.running import answer, execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.jobs.watchdog import end_with_parent
-from bezierplan.running.judge import answer
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World

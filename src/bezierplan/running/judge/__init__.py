@@ -1,1 +1,0 @@
-"""What is judged: answers of planners, and stored results once more."""
