@@ -1,5 +1,5 @@
-"""What the site and the report show: the results of a scale as the page reads them, with numbers
-and verdicts of the stored outcome, which rests on the most runs, in place of those of fewer runs.
+"""What the site and the report show: tables and figures of a scale, which mirror the papers', and
+as evidence the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
 """
 
 import base64
@@ -15,7 +15,6 @@ import pandas as pd
 import yaml
 
 from bezierplan.analysis import outcome
-from bezierplan.analysis.claims import sentences
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault
@@ -24,11 +23,6 @@ from bezierplan.study import page as page_jobs
 ROOT = Path(__file__).parents[1]
 OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
-# What the stored outcome says of a claim.
-_OF_CLAIM = (
-    *("verdict", "readings", "holds", "where_it_holds"),
-    *("reason", "published", "n", "effect"),
-)
 
 
 def results() -> tuple[str, Path]:
@@ -50,7 +44,10 @@ def content() -> tuple[SimpleNamespace, Path]:
         job = page_jobs.page(studies, scale).page
         shown = {key: own._replace(experiments={}) for key, own in job.studies.items()}
         page = build.page(
-            job._replace(studies=shown), folder, [str(folder / name) for name in outcome.TABLES]
+            job._replace(studies=shown),
+            folder,
+            [str(folder / name) for name in outcome.TABLES],
+            evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
         )
         tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
         files = {key: study.verdict_file() for key, study in studies.items()}
@@ -60,10 +57,7 @@ def content() -> tuple[SimpleNamespace, Path]:
         study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
-        study.baseline = reader.with_corners(reader.of_study(tables[2], key))
         study.outcome = page.headline.papers.loc[key]
-        if scale != SCALES[0]:
-            _as_stored(study)
     return page, folder
 
 
@@ -85,37 +79,6 @@ def name_of(key: str) -> str:
     ('Song 2016', 'Meledje')
     """
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
-
-
-def _as_stored(study: SimpleNamespace) -> None:
-    """Put the stored numbers and verdicts of a study in place of those of a scale with fewer runs,
-    which tells why a claim has its verdict.
-    """
-    for table in study.tables:
-        for cell in table["numbers"]:
-            if stored := cell["stored"]:
-                cell |= {name: value for name, value in stored.items() if name in cell}
-                own = None if stored["verdict"] == "identified" else stored["verdict"]
-                cell |= reader.nearness(cell) | {"stored": None, "own": own}
-        for _, cells in (table["laid"] or {"rows": []})["rows"]:
-            cells[:] = [(printed, _like(own, cell), cell) for printed, own, cell in cells]
-    study.gap = reader.gap(study.tables)
-    for claim in study.claims:
-        if stored := claim["stored"]:
-            if claim["why"] and stored["verdict"] != claim["verdict"]:
-                claim["why"] = f"In fewer runs, which say {claim['verdict']}: {claim['why']}"
-            claim |= {name: stored[name] for name in _OF_CLAIM} | {"stored": None}
-            claim["rule"] = sentences.rule(
-                study.job.claims.get(claim["id"]), claim["verdict"], claim["holds"]
-            )
-
-
-def _like(text: str, cell: dict[str, Any] | None) -> str:
-    """A number of ours with as many decimals as a text of it has."""
-    value = cell and cell["beside"]
-    if value is None or not re.fullmatch(r"[\d.]+", text):
-        return text
-    return f"{value:.{len(text.partition('.')[2])}f}"
 
 
 # --------------------------------------------------------------------------------------------------

@@ -115,7 +115,7 @@ def job() -> PageJob:
             )
             for name in claims
         },
-        repeats={"smoke": [2, 3], "extended": [250, 4000]},
+        repeats=[2, 3],
         tables={
             "table1": TableView(HOSTILE, "Ten runs", table, HOSTILE),
             "more": TableView("more", "Ten runs", table.but(extends="table1")),

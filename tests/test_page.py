@@ -125,8 +125,7 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
         (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
         (["b"], [("10.51", "14.000", second), ("", "", None)]),
     ]
-    (column,) = content.studies["one"].tables[0]["whole"].itertuples()
-    assert column.level == "10.5 (10 to 11)"
+    assert content.studies["one"].tables[0]["whole"].empty, "few runs judge no column as a whole"
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
@@ -139,16 +138,21 @@ def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     assert math.isclose(found["apart"], 0.1)
 
 
-def test_numbers_and_claims_stand_beside_those_of_the_stored_outcome(content, folder):
-    tables = [reader.read(folder / f"{name}.csv") for name in ("numbers", "claims")]
-    tables[0]["n_ours"], tables[1]["verdict"] = 4000, "partly"
-    stored = [*tables, None]
-    own = reader.studies(job(), folder, None, stored)["one"]
-    assert [cell["stored"] and cell["stored"]["n_ours"] for cell in own.tables[0]["numbers"]] == [
-        4000
-    ] * 3
-    assert {claim["stored"]["verdict"] for claim in own.claims} == {"partly"}
-    assert {claim["verdict"] for claim in own.claims} == {"supported", "contradicted", "undecided"}
+def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(content, folder):
+    numbers, claims = (reader.read(folder / f"{name}.csv") for name in ("numbers", "claims"))
+    numbers["n_ours"], claims["verdict"] = 4000, "partly"
+    nothing = pd.DataFrame(columns=["study", "table", "id", "variant"])
+    (file,) = (folder / "one").rglob("table1.wholes.csv")
+    columns = reader.read(file).assign(study="one", table="table1")
+    evidence = reader.Evidence(numbers, claims, nothing, nothing, columns)
+    own = reader.studies(job(), folder, None, evidence)["one"]
+    assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
+    assert {claim["verdict"] for claim in own.claims} == {"partly"}
+    assert own.baseline == []
+    (column,) = own.tables[0]["whole"].itertuples()
+    assert column.level == "10.5 (10 to 11)"
+    alone = reader.studies(job(), folder, None)["one"]
+    assert {claim["verdict"] for claim in alone.claims} > {"supported"}
 
 
 def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(content):
@@ -164,13 +168,12 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(c
     ]
 
 
-def test_a_scale_says_how_many_runs_it_has_and_that_they_are_fewer():
-    repeats = [{"full": [10, 30], "extended": [250, 4000]}, {"full": [100, 100], "extended": []}]
-    first, second = answer.about_scale("full", repeats, True).split(". ")
-    assert first.endswith(
-        "as many runs as the papers report: 10 to 100 runs per method and condition"
+def test_a_scale_says_how_many_runs_it_has_and_where_the_evidence_is():
+    alone = answer.about_scale("full", [[10, 30], [100, 100], []], False)
+    assert alone.endswith(
+        "as many runs as the papers report: 10 to 100 runs per method and condition."
     )
-    assert second.startswith("These are fewer than the 250 to 4,000 runs of the outcome above")
+    assert "docs/outcome" in answer.about_scale("full", [[10, 30]], True)
 
 
 def test_what_follows_for_a_paper_stands_at_its_head(text):

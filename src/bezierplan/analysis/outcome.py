@@ -23,6 +23,9 @@ BLOCK = "outcome"
 AUDIT, READINGS = "audit.csv", ("readings.csv", "claims_by_reading.csv")
 BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
+CHECKS = "claim_checks.csv"
+EVIDENCE = (*TABLES, CHECKS, WHOLES)
+"""What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
 SCALE = "a verdict is about a method, not about the few runs that a paper could afford."
 LAID = (
     "In each cell below the printed number stands before ours, of many runs: + agrees, x "
@@ -57,6 +60,9 @@ def write(
             if (file := RESULTS / key / name).exists():
                 shutil.copyfile(file, KEPT / f"{key}_{name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
+    checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in titles)
+    primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
+    checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
     settings.to_csv(KEPT / "settings.csv", index=False)
     scored = benchmark.of_results(FULL, experiments)
     scored.to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")

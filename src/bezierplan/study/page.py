@@ -5,7 +5,7 @@ from pathlib import Path
 
 from bezierplan.analysis.jobs import Verification
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import OUTCOME, changes, files, in_printed_order
+from bezierplan.figures.page import changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
     Citation,
     FigureView,
@@ -66,24 +66,15 @@ def verified(studies: Studies, scale: str, root: str = "") -> Verification:
 
 def page(studies: Studies, scale: str, root: str = "") -> Page:
     """The page of a scale."""
-    behind, outcome = shows(studies, scale, root), _outcome(studies, scale)
+    behind, outcome = shows(studies, scale, root), any(map(_of_project, studies.values()))
     shown = {key: _study(own, scale, root) for key, own in studies.items()}
     return Page(
-        PageJob(scale, shown, outcome=bool(outcome)),
+        PageJob(scale, shown, outcome=outcome and scale != "extended"),
         [place for place in behind for key, name in [place.split("/")] if studies[key].moves(name)],
-        sources=[*files(), *outcome],
+        sources=files(),
         shows=behind,
         code=[module for own in studies.values() for module in own.code_for("metrics")],
     )
-
-
-def _outcome(studies: Studies, scale: str) -> list[str]:
-    """Files of the README's outcome, of scale extended, which the page of any other scale shows
-    first, in a clone that has them; none if it shows none of the papers.
-    """
-    papers = any(map(_of_project, studies.values()))
-    shown = scale != "extended" and papers and all(file.is_file() for file in OUTCOME)
-    return [*map(str, OUTCOME)] if shown else []
 
 
 def _of_project(study: Study) -> bool:
@@ -108,7 +99,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
         },
         claims={claim.id: claim for claim in study.claims},
-        repeats={each: _repeats(study, each) for each in (scale, "extended")},
+        repeats=_repeats(study, scale),
         tables={
             name: TableView(
                 study.tables[name].title,

@@ -10,11 +10,6 @@ from pathlib import Path
 from bezierplan.places import TREE
 
 HERE = Path(__file__).parent
-OUTCOME = [
-    TREE / "docs" / "outcome" / name
-    for name in ("numbers.csv", "claims.csv", "baseline_comparison.csv")
-]
-"""The README's outcome, in a clone: tables of all studies."""
 SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
 """The settings of all studies behind it."""
 

@@ -9,27 +9,25 @@ from bezierplan.analysis import words
 from bezierplan.figures.page.reader import Row
 
 
-def about_scale(scale: str, repeats: list[dict[str, list[int]]], stored: bool) -> str:
-    """How many runs the results of a scale rest on, and how this differs from the stored outcome.
+def about_scale(scale: str, repeats: list[list[int]], outcome: bool) -> str:
+    """How many runs the results of a scale rest on, and where the evidence of many runs is.
 
-    repeats: of each study, scale -> the least and the largest number of runs of a method under a
-    condition. stored: whether the page begins with the stored outcome.
+    repeats: of each study, the least and the largest number of runs of a method under a condition.
+    outcome: whether the project keeps the outcome of many runs of these studies.
     """
-    runs = {
-        name: _span([number for each in repeats for number in each.get(name) or []])
-        for name in (scale, "extended")
-    }
+    runs = _span([number for own in repeats for number in own])
     first = {
         "smoke": "a small subset, which shows that everything works",
         "full": "as many runs as the papers report",
         "extended": "enough runs to judge methods",
     }[scale]
-    text = f"What follows is of scale {scale}, {first}: {runs[scale]} runs per method and condition"
-    if not stored:
-        return f"{text}."
+    text = f"All of this page is of scale {scale}, {first}: {runs} runs per method and condition."
+    if not outcome:
+        return text
     return (
-        f"{text}. These are fewer than the {runs['extended']} runs of the outcome above, so "
-        "verdicts can differ and more stays open; each number and claim names both."
+        f"{text} It is the mirror: the papers' tables and figures, made again and laid over the "
+        "printed ones. The evidence, what many runs say, is kept in docs/outcome, a page a paper; "
+        "verdicts there rest on more runs than those here."
     )
 
 

@@ -16,7 +16,7 @@ import bezierplan
 from bezierplan import places
 from bezierplan.analysis import baseline_comparison, headline, wholes, words
 from bezierplan.analysis.claims.sentences import meaning
-from bezierplan.figures.page import HERE, OUTCOME, addresses, answer, charts, reader, runs
+from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 
 # Mark of a comparison -> the class that colours it, and what it says.
@@ -43,12 +43,15 @@ def write(
 
 
 def page(
-    job: PageJob, folder: Path, summary: list[str] | None = None, proof: str | None = None
+    job: PageJob,
+    folder: Path,
+    summary: list[str] | None = None,
+    proof: str | None = None,
+    evidence: reader.Evidence | None = None,
 ) -> SimpleNamespace:
-    """What the templates show. data: what the viewer reads."""
+    """What the templates show. data: what the viewer reads. evidence: as for `reader.studies`."""
     tables = [reader.read(file) for file in summary] if summary else None
-    stored = [reader.read(file) for file in OUTCOME] if job.outcome else None
-    studies = reader.studies(job, folder, tables, stored)
+    studies = reader.studies(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
     for key, study in studies.items():
         for name, described in study.job.experiments.items():
@@ -60,10 +63,12 @@ def page(
     repeats = [own.repeats for own in job.studies.values()]
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.about_scale(job.scale, repeats, bool(stored)),
+        about_scale=answer.about_scale(job.scale, repeats, job.outcome),
         made_by=_made_by(),
-        headline=_headline(stored or tables, {key: own.title for key, own in job.studies.items()}),
-        stored=bool(stored),
+        headline=_headline(
+            [*evidence[:3]] if evidence else tables,
+            {key: own.title for key, own in job.studies.items()},
+        ),
         verified=_verified(Path(proof)) if proof else None,
         studies=studies,
         data=data

@@ -69,9 +69,9 @@ class StudyView(NamedTuple):
     methods: dict[str, MethodView]
     claims: dict[str, Claim]
     """By id."""
-    repeats: dict[str, list[int]]
-    """Scale -> the least and the largest number of runs of a method under a condition; empty for a
-    study without experiments.
+    repeats: list[int]
+    """The least and the largest number of runs of a method under a condition; empty for a study
+    without experiments.
     """
     tables: dict[str, TableView]
     figures: dict[str, FigureView]
@@ -98,4 +98,4 @@ class PageJob(NamedTuple):
     scale: str
     studies: dict[str, StudyView]
     outcome: bool
-    """Whether the README's outcome is shown, next to that of this scale."""
+    """Whether the project keeps the outcome of many runs of these studies."""

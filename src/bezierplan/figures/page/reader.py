@@ -5,7 +5,7 @@ cells are None. Columns keep their names; what is added to a row stands in the f
 import ast
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -41,29 +41,48 @@ def of_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
     return pd.DataFrame() if table is None else table[table["study"] == study]
 
 
+class Evidence(NamedTuple):
+    """What many runs say of all studies: their numbers, claims, comparisons with the baseline,
+    comparisons of claims, and columns as wholes.
+    """
+
+    numbers: pd.DataFrame
+    claims: pd.DataFrame
+    measures: pd.DataFrame
+    checks: pd.DataFrame
+    wholes: pd.DataFrame
+
+    def of(self, study: str) -> "Evidence":
+        """That of one study."""
+        return Evidence(*(of_study(table, study) for table in self))
+
+
 def studies(
     job: PageJob,
     folder: Path,
     summary: list[pd.DataFrame] | None,
-    outcome: list[pd.DataFrame] | None,
+    evidence: Evidence | None = None,
 ) -> dict[str, SimpleNamespace]:
-    """All studies, from the files in the folder of a scale.
+    """All studies, from the files in the folder of a scale, which are the mirror of the papers.
 
     summary: numbers, claims and comparisons with the baseline of all studies, if the scale has
-    them. outcome: those of the README's outcome, if it is shown beside this scale's.
+    them. evidence: what stands in place of the scale's own verdicts, reasons and wholes.
     """
     numbers, _, measured = summary or [None] * 3
-    other_numbers, other_claims, _ = outcome or [None] * 3
     pages = {}
     for key, described in job.studies.items():
         files = {name: read(folder / key / FILES[name]) for name in described.files}
-        claims = _claims(key, described, files, of_study(other_claims, key))
-        counted = of_study(numbers, key), of_study(other_numbers, key)
+        own = evidence and evidence.of(key)
+        if own:
+            files |= {"claims": own.claims, "checks": own.checks}
+        claims = _claims(key, described, files)
+        counted = of_study(numbers, key)
         own_tables = [
-            _table(key, name, each, folder, described.labels, *counted)
+            _table(key, name, each, folder, described.labels, counted, own)
             for name, each in described.tables.items()
         ]
-        baseline, verdict = of_study(measured, key), folder / key / "verdict.md"
+        baseline = own.measures if own else of_study(measured, key)
+        verdict = folder / key / "verdict.md"
         pages[key] = SimpleNamespace(
             key=key,
             job=described,
@@ -142,7 +161,7 @@ def _table(
     folder: Path,
     labels: dict[str, str],
     counted: pd.DataFrame,
-    outcome: pd.DataFrame,
+    evidence: Evidence | None,
 ) -> Row:
     """A table: its numbers next to published ones, or its columns and rows."""
     row, spec = _artefact(study, name, artefact), artefact.spec
@@ -151,13 +170,18 @@ def _table(
     table = read(folder / row["csv"])
     if not compared:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": records(table)}
-    counted, outcome = (
-        each[each["table"] == name] if len(each) else each for each in (counted, outcome)
-    )
-    cells = _numbers(row["address"], table, spec, counted, outcome, labels)
+    counted = counted[counted["table"] == name] if len(counted) else counted
+    many = evidence.numbers[evidence.numbers["table"] == name] if evidence else pd.DataFrame()
+    cells = _numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
-    whole = wholes.in_words(read(folder / f"{row['stem']}.wholes.csv"))
+    # A column is judged as a whole by many runs alone.
+    columns = pd.DataFrame()
+    if evidence:
+        columns = evidence.wholes[evidence.wholes["table"] == name]
+    elif folder.name == "extended":
+        columns = read(folder / f"{row['stem']}.wholes.csv")
+    whole = wholes.in_words(columns) if len(columns) else columns
     laid = _laid(folder / f"{row['stem']}.csv", spec, cells)
     return row | {"numbers": cells, "laid": laid, "whole": whole}
 
@@ -184,13 +208,13 @@ def _numbers(
     comparison: pd.DataFrame,
     spec: Pivot,
     counted: pd.DataFrame,
-    outcome: pd.DataFrame,
+    many: pd.DataFrame,
     labels: dict[str, str],
 ) -> list[Row]:
     """The cells of a table: those with a published number, and what other methods have in the same
     column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
-    runs would print it), apart (relative to the published number), near, stored (the row of the
-    README's outcome), own (the verdict on ours; verdict: by which it counts).
+    runs would print it), apart (relative to the published number), near, own (the verdict on ours;
+    verdict: by which it counts). many: the rows of the evidence, in place of the table's own.
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -202,17 +226,18 @@ def _numbers(
     printed = comparison.loc[published, what].drop_duplicates()
     cells = records(comparison.merge(printed, on=what))
     positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
-    others = {address(*(row[name] for name in positions[0])): row for row in records(outcome)}
+    by_place = {address(*(row[name] for name in positions[0])): row for row in records(many)}
     for cell, position, name in zip(
         cells, positions, of_cells(table, positions, spec.primary), strict=True
     ):
+        if row := by_place.get(address(*position.values())):
+            cell |= {name: value for name, value in row.items() if name in cell}
         cell |= {
             "keys": {key: position[key] for key in keys},
             "row": ", ".join(printed_key(key, position[key], labels) for key in keys),
             "column": _heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
-            "stored": others.get(address(*position.values())),
-            "own": cell["verdict"],
+            "own": None if cell["verdict"] == "identified" else cell["verdict"],
             "verdict": "identified" if cell["identified"] else cell["verdict"],
             **nearness(cell),
         }
@@ -249,19 +274,15 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
     return f"{naming.column_name(metric, labels)}: {statistic}"
 
 
-def _claims(
-    study: str, content: StudyView, files: dict[str, pd.DataFrame], outcome: pd.DataFrame
-) -> list[Row]:
+def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Claims in their primary variant. Added: address, rule (what its count means), why,
-    comparisons, interpretations (its other variants), shown_in, stored (the row of the README's
-    outcome).
+    comparisons, interpretations (its other variants), shown_in.
     """
     if "claims" not in files:
         return []
     compared: dict[tuple, list[Row]] = {}
     for row in records(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
-    others = {row["id"]: row for row in records(outcome) if row["primary"]}
     claims, there = [], content.tables.keys() | content.figures.keys()
     names = sentences.variants_named([*content.claims.values()], content.labels)
     for _, rows in files["claims"].groupby("id", sort=False):
@@ -292,7 +313,6 @@ def _claims(
                     for name in (claim["artefact"] or "").replace(",", " ").split()
                     if name in there
                 ],
-                "stored": others.get(claim["id"]),
             }
         )
     return claims
