@@ -76,6 +76,7 @@ def write(folder: Path) -> None:
         "papers": page.studies,
         "planners": planners,
         "references": {entry["key"]: entry for entry in content.citations()},
+        "worth": reader.records(reader.read(content.OUTCOME / outcome.WORTH)),
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.listed([], [*names.NAMES])],
         "readings": {

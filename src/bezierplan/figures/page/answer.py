@@ -3,9 +3,9 @@ use on a map of one's own.
 """
 
 from types import SimpleNamespace
-from typing import Any
 
 from bezierplan.analysis import words
+from bezierplan.analysis.baseline_comparison import EQUAL
 from bezierplan.figures.page.reader import Row
 
 
@@ -56,52 +56,19 @@ def counted(study: SimpleNamespace) -> list[Row]:
     return [cell for table in study.tables for cell in table["numbers"] if cell["counted"]]
 
 
-def kind_of(workspace: dict[str, Any]) -> str:
-    """The kind and size of a map in words."""
-    left, right, bottom, top = workspace["bounds"]
-    if workspace.get("rows"):
-        return f"grid of {len(workspace['rows'][0])} × {len(workspace['rows'])} cells"
-    shapes = "circles" if workspace["kind"] == "circles" else "polygons"
-    return f"{shapes} in {right - left:.4g} × {top - bottom:.4g} {workspace['unit']}"
-
-
-def by_map(studies: dict[str, SimpleNamespace], data: dict[str, Any]) -> list[Row]:
-    """By kind and size of map, of the methods whose runs are shown on them: those that always find
-    a free path, or else the one that does most often, the shortest paths first.
-
-    Rows: map, studies, methods (number), best (study, method, share of feasible runs, gap: median
-    length over the exact bound, less 1; CPU time over the baseline's, of the whole study).
+def smoothest(studies: dict[str, SimpleNamespace]) -> list[tuple[SimpleNamespace, Row]]:
+    """Of each study, of the methods that are free as often as the baseline and bend less, the one
+    whose tightest bend is widest: the study, and its row of the comparison with the baseline.
     """
-    by_kind: dict[str, dict[tuple[str, str], list[Row]]] = {}
-    for key, study in studies.items():
-        for each in study.shown:
-            if each["problem"]:
-                problem = data["problems"][f"{key}/{each['experiment']}/{each['problem']}"]
-                if problem["world"] is None:
-                    kind = kind_of(data["workspaces"][problem["workspace"]])
-                    by_kind.setdefault(kind, {}).setdefault((key, each["method"]), []).append(each)
-    rows = []
-    for kind, methods in sorted(by_kind.items()):
-        measured = [
-            _measured(studies[key], method, shown) for (key, method), shown in methods.items()
+    found = []
+    for study in studies.values():
+        smooth = [
+            row
+            for row in study.baseline
+            if row["feasible"] >= row["feasible_baseline"]
+            and row["curvature"] is not None
+            and row["curvature"] < 1 - EQUAL
         ]
-        best = max(measured, key=lambda row: (row["feasible"], -row["gap"]))
-        always = sum(row["feasible"] == 1 for row in measured)
-        keys = list(dict.fromkeys(key for key, _ in methods))
-        rows.append(
-            {"map": kind, "studies": keys, "methods": len(methods), "always": always, "best": best}
-        )
-    return rows
-
-
-def _measured(study: SimpleNamespace, method: str, rows: list[Row]) -> Row:
-    """A method on the maps of a kind."""
-    gaps = [each["gap"] for each in rows if each["gap"] is not None]
-    cpu = next((row["cpu"] for row in study.baseline if row["method"] == method), None)
-    return {
-        "study": study,
-        "method": method,
-        "feasible": sum(each["feasible"] for each in rows) / sum(each["count"] for each in rows),
-        "gap": sum(gaps) / len(gaps) if gaps else float("inf"),
-        "cpu": cpu,
-    }
+        if smooth:
+            found.append((study, min(smooth, key=lambda row: row["curvature"])))
+    return found
