@@ -15,7 +15,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
-from bezierplan.geometry.shortest_paths.graph import way_back
 from bezierplan.kernels import compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
@@ -245,4 +244,7 @@ def _shortest_way(count, tails, heads, lengths):
                 far[other], before[other] = so_far, node
                 heapq.heappush(heap, (so_far, other))
             k = older[k]
-    return far[1], way_back(before, far[1])
+    way = [1]
+    while before[way[-1]] >= 0:
+        way.append(before[way[-1]])
+    return far[1], np.array(way[::-1]) if far[1] < np.inf else np.empty(0, dtype=np.int64)
