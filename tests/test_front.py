@@ -1,5 +1,5 @@
-"""Fronts of two measures, paths near the exact shortest one and mean ranks over problems: small
-tables whose answers can be counted.
+"""Fronts of two measures and paths near the exact shortest one: small tables whose answers can be
+counted.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ from panels import options_of
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
-from bezierplan.figures.panels import critical_difference, front
+from bezierplan.figures.panels import front
 
 
 def results(rows) -> Results:
@@ -64,18 +64,3 @@ def test_a_point_is_a_median_of_free_paths_and_the_share_of_them_is_beside_it():
     assert frame["x"].to_dict() == pytest.approx({"good": 0.3, "bad": 0.01})
     assert frame["free"].to_dict() == pytest.approx({"good": 5 / 6, "bad": 3 / 4})
     assert frame["front"].all()
-
-
-def test_ranks_over_problems_are_those_of_the_median_run():
-    rows = [
-        (f"p{k}", name, over)
-        for k in range(5)
-        for name, overs in {"a": (1.1, 3, 1.1), "b": (1.2, 1.2, 1), "c": (None, None, 1)}.items()
-        for over in overs
-    ]
-    frame = critical_difference.data(
-        results(rows), options_of(critical_difference, metric="certified_length", unit="problem")
-    )
-    ranks = frame[frame["part"] == "rank"].set_index("method")["value"]
-    assert ranks.to_dict() == {"a": 1, "b": 2, "c": 3}
-    assert frame["units"].unique().tolist() == [5]

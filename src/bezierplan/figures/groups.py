@@ -71,26 +71,6 @@ def measured(results: Results, metric: str) -> Results:
     return results._replace(runs=results.runs.assign(value=numbers))
 
 
-def by_problem(results: Results) -> pd.DataFrame:
-    """The lower median of the metric of `measured`: one row per condition, one column per method.
-
-    Raises ValueError if a method has no run under some condition: a comparison needs shared
-    problems.
-    """
-    table = (
-        results.runs.groupby(["condition", "method"])["value"]
-        .quantile(0.5, interpolation="lower")
-        .unstack("method")
-    )
-    if table.isna().any(axis=None):
-        method = table.columns[table.isna().any()][0]
-        raise ValueError(
-            f"{method} has no run under {table.index[table[method].isna()][0]}; compared methods "
-            "need the same problems"
-        )
-    return table
-
-
 def values(group: Results) -> np.ndarray:
     """The sorted numbers (n,) of the runs that have the metric of `measured`."""
     return np.sort(group.runs["value"].dropna().to_numpy())

@@ -265,14 +265,6 @@ def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
     axes.grid(visible=True, axis="y")
 
 
-def name_rows(axes: Axes, names: Sequence[str]) -> None:
-    """Name rows at heights 0, 1, ..., the first on top."""
-    axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
-    axes.grid(visible=True, axis="x")
-
-
 def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
     """The distinct values of a column: those in a panel's `where`, in its order, then the others,
     sorted.

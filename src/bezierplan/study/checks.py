@@ -409,8 +409,6 @@ class Checks:
             raise Fault(
                 f"where: selects {len(methods)} values of method; expected one, which is shown"
             )
-        if len(methods) < panel.fewest_methods:
-            raise Fault(f"where: expected at least {panel.fewest_methods} methods")
 
     # claims.yaml and assumptions.yaml
 

@@ -119,14 +119,13 @@ class Panel(Model, ABC):
 
     rerun: whether runs are repeated to draw what no table keeps. one: columns of which the runs
     that it shows have one value. drives: whether these are drives. tracks: whether
-    their planner must have `track`. fewest_methods: how many methods it compares at least.
+    their planner must have `track`.
     """
 
     rerun: ClassVar[bool] = False
     one: ClassVar[tuple[str, ...]] = ()
     drives: ClassVar[bool] = False
     tracks: ClassVar[bool] = False
-    fewest_methods: ClassVar[int] = 1
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Line = Field(
