@@ -281,7 +281,44 @@ def test_a_claim_depends_on_a_variant_with_any_other_verdict():
 
 @pytest.mark.parametrize("key", READ)
 def test_the_kept_readings_are_those_of_today(key):
-    made, _ = job(key)
+    made, quantities = job(key)
     kept = pd.read_csv(TREE / outcome.KEPT / f"{key}_readings.csv")
     names = [readings.name_of(each) for each in readings.listed(made.assumptions, made.pairs)]
-    assert {*kept["reading"]} <= {*names}
+    assert [*kept["reading"]] == names
+    assert (kept["numbers"] == sum(each.printed["votes"].sum() for each in quantities)).all()
+
+
+@pytest.mark.parametrize(
+    ("study", "claim", "hangs_on"),
+    [
+        *(("meledje", claim, "M3 = none") for claim in ("C1", "C3", "C4", "C10")),
+        *(("elhoseny2017", claim, "metric ") for claim in ("C1", "C2", "C3", "C6", "C17")),
+        *(("ma2020", claim, "strong") for claim in ("C4", "C24")),
+        ("ma2020", "C6", "strict corners"),
+    ],
+)
+def test_what_is_known_to_turn_does(study, claim, hangs_on):
+    kept = (
+        pd.read_csv(TREE / outcome.KEPT / "claims.csv").query("primary").set_index(["study", "id"])
+    )
+    assert kept.loc[(study, claim), "verdict"] == "depends"
+    assert hangs_on in kept.loc[(study, claim), "reason"]
+
+
+def test_the_order_of_chaotic_maps_is_reversed_with_an_inertia_of_1_alone():
+    kept = pd.read_csv(TREE / outcome.KEPT / "tharwat2018_readings.csv").set_index("reading")
+    assert kept.loc["default", "order"] < -0.5 < 0 < kept.loc["O2=0.4, O3b=1.35", "order"]
+    assert (kept.loc[["default", "O2=0.4, O3b=1.35"], "p"] >= readings.LEAST_P).all()
+
+
+@pytest.mark.parametrize(
+    ("study", "reading", "why"),
+    [
+        ("meledje", "M19=closed", "a printed mean lies below the exact optimum"),
+        ("elhoseny2017", "O1=0.1", "the proposed method returns no path"),
+    ],
+)
+def test_what_is_known_to_be_excluded_is(study, reading, why):
+    kept = pd.read_csv(TREE / outcome.KEPT / f"{study}_readings.csv").set_index("reading")
+    assert kept.loc[reading, "excluded_by"] == why
+    assert kept["excluded_by"].isna()["default"]
