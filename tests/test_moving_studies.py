@@ -3,16 +3,15 @@ in one line, and replaying a drive.
 """
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
-from PIL import Image, ImageSequence
 
 from bezierplan.analysis import metrics, results
 from bezierplan.analysis.run_tables import equal
 from bezierplan.commands import replay
-from bezierplan.figures import animation
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.simulation.motion_check import Motion
@@ -161,21 +160,13 @@ def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven):
         execution.redriven(described, run | {"repeat": 0}, made["across"], found["across"])
 
 
-def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(driven, tmp_path):
-    study, _ = driven
-    file = tmp_path / "drive.gif"
-    animation.save_run(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
-    assert file.stat().st_size < 500_000
-    with Image.open(file) as found:
-        frames = [
-            np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(found)
-        ]
-        # Frames in which nothing moves are one, shown longer.
-        shown = sum(frame.info["duration"] for frame in ImageSequence.Iterator(found))
-    assert shown == (animation.FRAMES - 1) * animation.EACH + animation.LAST
-    # The way so far is red: none at first, the longest in the end.
-    red = [np.count_nonzero((frame[..., 0] - frame[..., 1:].max(axis=2)) > 80) for frame in frames]
-    assert red[0] < red[len(red) // 2] < red[-1]
+def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
+    study, (runs, *_) = driven
+    file = tmp_path / "drive.svg"
+    replay.draw_drive(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
+    end = runs.to_pylist()[0]["travelled"] + runs.to_pylist()[0]["waits"]
+    steps = [int(step) for step in re.findall(r"step (\d+)", file.read_text())]
+    assert steps == [round(moment * end) for moment in replay.MOMENTS]
 
 
 def test_files_of_problems_keep_the_world(tmp_path):

@@ -7,13 +7,9 @@ import pandas as pd
 
 from bezierplan.analysis import outcome
 from bezierplan.commands import studies_of
-from bezierplan.figures import animation
 from bezierplan.study.page import settings_of
-from bezierplan.study.replays import replay
 
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
-# The run of the README's animation, and its file.
-DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 
 
 def main() -> None:
@@ -37,7 +33,6 @@ def main() -> None:
     for picture in PICTURES:
         study, _, name = picture.split("/")
         shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
-    animation.save_run(replay(DRIVE, studies), outcome.KEPT / ANIMATION)
 
 
 def named(studies: dict[str, Any]) -> tuple[dict[str, str], dict[str, str]]:

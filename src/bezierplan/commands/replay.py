@@ -6,15 +6,20 @@ from pathlib import Path
 
 from bezierplan import api
 from bezierplan.analysis import answers
+from bezierplan.analysis.results import Results
 from bezierplan.analysis.run_tables import equal, stored_runs
 from bezierplan.commands import studies_of
-from bezierplan.figures import animation
+from bezierplan.figures import sheet
+from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.study.replays import replay
+
+MOMENTS = (0.1, 0.4, 0.7, 1.0)
+"""Those at which a drive is drawn, as shares of its time."""
 
 
 def main(run: str, *, studies: Sequence[str] = ()) -> None:
     """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
-    results/replay; of a drive an animation. Status 1 if it differs from the stored one.
+    results/replay; of a drive, that of some moments. Status 1 if it differs from the stored one.
 
     Parameters
     ----------
@@ -38,8 +43,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     picture.parent.mkdir(parents=True, exist_ok=True)
     if reproduced.worlds:
         lines = {name: str(row[name]) for name in ("feasible", "length", "arrival", "stop")}
-        picture = picture.with_suffix(".gif")
-        animation.save_run(reproduced, picture)
+        draw_drive(reproduced, picture)
     else:
         answer = api.answer_of(reproduced, run)
         lines = answers.lines(answer)
@@ -48,3 +52,14 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
         print(f"{name:16}{text}")
     if not all(same.values()):
         sys.exit(1)
+
+
+def draw_drive(results: Results, picture: Path) -> None:
+    """Save a picture of the drive in the results of one run."""
+    experiment, repeat = results.runs[["experiment", "repeat"]].iloc[0]
+    shown = {"kind": "snapshot", "experiment": experiment, "pick": {"repeat": int(repeat)}}
+    panels = [panel_of(shown | {"at": moment}) for moment in MOMENTS]
+    problems = {experiment: results.problems}
+    frame = sheet.data(panels, Sources({experiment: results}))
+    figure = sheet.draw(panels, frame, sheet.Scene(problems, {}, {}, ""), columns=2)
+    sheet.save(figure, str(picture))
