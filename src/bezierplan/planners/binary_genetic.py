@@ -340,22 +340,12 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_ent
     samples = last - first + 1
     for s in range(samples):
         x[s] = y[s] = 0.0
-    # Three control points at a time, so that samples are read and written fewer times.
-    threes = first_point + (last_point + 1 - first_point) % 3
-    for p in range(first_point, threes):
-        a = basis[p, first : last + 1]
-        ax, ay = places[cells[p], 0], places[cells[p], 1]
+    for p in range(first_point, last_point + 1):
+        weights = basis[p, first : last + 1]
+        column, row = places[cells[p], 0], places[cells[p], 1]
         for s in range(samples):
-            x[s] += a[s] * ax
-            y[s] += a[s] * ay
-    for p in range(threes, last_point + 1, 3):
-        a, b = basis[p, first : last + 1], basis[p + 1, first : last + 1]
-        c = basis[p + 2, first : last + 1]
-        ax, bx, cx = places[cells[p], 0], places[cells[p + 1], 0], places[cells[p + 2], 0]
-        ay, by, cy = places[cells[p], 1], places[cells[p + 1], 1], places[cells[p + 2], 1]
-        for s in range(samples):
-            x[s] = x[s] + a[s] * ax + b[s] * bx + c[s] * cx
-            y[s] = y[s] + a[s] * ay + b[s] * by + c[s] * cy
+            x[s] += weights[s] * column
+            y[s] += weights[s] * row
     # What vector instructions can do comes first: they make whole numbers of 32 bits only. Then the
     # sum, in its order, which waits so long for each addition that cells are looked up meanwhile.
     for s in range(samples):
