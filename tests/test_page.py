@@ -189,11 +189,11 @@ def test_the_page_says_what_to_use_with_a_command_on_a_map_that_exists(text):
     assert (Path(__file__).parents[1] / map_file).is_file()
 
 
-def test_the_smoothest_method_is_free_as_often_as_the_baseline():
+def test_the_smoothest_method_is_often_free():
     rows = [
         {"method": name, "feasible": free, "feasible_baseline": 1.0, "curvature": curvature}
         for name, free, curvature in (
-            ("rare", 0.9, 0.1),
+            ("rare", 0.85, 0.1),
             ("tight", 1.0, 1.2),
             ("cornered", 1.0, None),
             ("smooth", 1.0, 0.5),

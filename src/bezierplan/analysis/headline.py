@@ -33,18 +33,15 @@ METHODS = {
 """Columns of the table of proposed methods -> their headings, likewise."""
 
 LEGEND = (
-    "A paper's word is made from the claims of its abstract and conclusion: *reproduced* if all "
-    "of them that can be decided hold, *not reproduced* if none does, even in part. A number "
-    "*reproduces* if it lies inside our 95 % prediction interval for an experiment of the paper's "
-    "size, and the interval is narrow enough to rule out other plausible values; or if it is the "
-    "length of a path that we can name. The others *cannot be tested*: the paper does not print "
-    "the map or define the quantity, or the interval is too wide."
+    "A paper's word follows from the claims of its abstract and conclusion. A number *reproduces* "
+    "if it lies in our 95 % prediction interval, narrow enough to rule out other plausible values, "
+    "or is the length of a path that we can name. Most *cannot be tested*: the paper does not "
+    "print the map, or define the quantity."
 )
 
 BESIDE = (
-    "The proposed methods beside the exact shortest path with rounded corners, which needs no "
-    "search and is always free: medians of length, largest curvature and CPU time, as multiples of "
-    "its own. A small bend is smooth."
+    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
+    "needs no search and is always free. A bend below 1 is smoother."
 )
 
 CLOSE = 0.1

@@ -8,6 +8,9 @@ from bezierplan.analysis import words
 from bezierplan.analysis.baseline_comparison import EQUAL
 from bezierplan.figures.page.reader import Row
 
+OFTEN = 0.9
+"""Share of runs with a free path from which a method is recommended."""
+
 
 def about_scale(scale: str, repeats: list[list[int]], outcome: bool) -> str:
     """How many runs the results of a scale rest on, and where the evidence of many runs is.
@@ -57,15 +60,16 @@ def counted(study: SimpleNamespace) -> list[Row]:
 
 
 def smoothest(studies: dict[str, SimpleNamespace]) -> list[tuple[SimpleNamespace, Row]]:
-    """Of each study, of the methods that are free as often as the baseline and bend less, the one
-    whose tightest bend is widest: the study, and its row of the comparison with the baseline.
+    """Of each study, of the methods that are free in at least the share `OFTEN` of their runs and
+    bend less than the baseline, the one whose tightest bend is widest: the study, and its row of
+    the comparison with the baseline.
     """
     found = []
     for study in studies.values():
         smooth = [
             row
             for row in study.baseline
-            if row["feasible"] >= row["feasible_baseline"]
+            if row["feasible"] >= OFTEN
             and row["curvature"] is not None
             and row["curvature"] < 1 - EQUAL
         ]
