@@ -1,5 +1,7 @@
 """What follows for each paper: the sentences of the kept outcome, and their conditions."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -37,7 +39,8 @@ def test_sentences_follow_from_the_kept_outcome(kept, study):
     assert 2 <= len(found) <= 5
     assert [each.fails for each in found] == [None] * len(found)
     text = (KEPT / f"{study}.md").read_text(encoding="utf-8")
-    assert len(text.split()) <= 900
+    words = [word for word in text.split() if re.search(r"\w", word)]
+    assert len(words) <= 900
     assert all(each.text in text for each in found)
 
 
