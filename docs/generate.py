@@ -30,7 +30,7 @@ from bezierplan.study.alternatives import default_of
 HERE = Path(__file__).parent
 MOST_NAMED = 4
 """Methods named beside a value; of more, their number."""
-RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json", "summary.md")
+RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json")
 """Files of results that the site holds: what the page of results links to."""
 
 

@@ -1,6 +1,4 @@
-"""The last lines of a workflow: where the results are, how long it took, what came out, and the
-page.
-"""
+"""The last lines of a workflow: where the results are, how long it took, and the page."""
 
 from pathlib import Path
 
@@ -8,14 +6,10 @@ import pytest
 
 import snakemake_logger_plugin_bezierplan as plugin
 
-SUMMARY = (
-    "# Outcome at scale full\n\n**3 published numbers: 1 in agreement. 2 claims: 2 "
-    "supported.**\n\n**Other** words\n"
-)
 ROUTE, PAGE = Path("results/full/song2016/runs/routes/0.parquet"), Path("results/full/index.html")
 
 
-def test_the_last_line_names_the_page_after_what_came_out(tmp_path, monkeypatch):
+def test_the_last_line_names_the_page(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert plugin.last_lines({ROUTE}, 203.77) == [
         "Results: results/full/song2016",
@@ -23,13 +17,6 @@ def test_the_last_line_names_the_page_after_what_came_out(tmp_path, monkeypatch)
     ]
     page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
     assert plugin.last_lines({PAGE}, 1) == ["Results: results/full", "Time: 0:00:01", page]
-    PAGE.parent.mkdir(parents=True)
-    PAGE.with_name("summary.md").write_text(SUMMARY)
-    assert plugin.last_lines({PAGE}, 1)[2:] == [
-        "3 published numbers: 1 in agreement.",
-        "2 claims: 2 supported.",
-        page,
-    ]
 
 
 @pytest.mark.parametrize(

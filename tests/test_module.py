@@ -83,7 +83,7 @@ def test_a_module_with_a_prefix_makes_everything(folder):
     for name in (
         "baseline_comparison.csv",
         "index.html",
-        "summary.md",
+        "numbers.csv",
         "walk/claims.csv",
         "walk/beyond/ways.svg",
         "walk/beyond/lengths.comparison.csv",

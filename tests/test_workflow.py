@@ -154,7 +154,7 @@ def test_a_tree_is_put_back_whatever_was_done_to_it(put_back, finished):
     """
     tree = put_back()
     edited, missing, new = (
-        tree / name for name in ("Snakefile", "results/full/summary.md", "results/new")
+        tree / name for name in ("Snakefile", "results/full/claims.csv", "results/new")
     )
     dates = edited.stat()
     edited.write_text(edited.read_text().swapcase())
@@ -167,7 +167,7 @@ def test_a_tree_is_put_back_whatever_was_done_to_it(put_back, finished):
     assert put_back() == tree
     assert edited.read_text() == (finished / "Snakefile").read_text()
     assert edited.stat().st_mtime_ns == dates.st_mtime_ns
-    assert missing.read_text() == (finished / "results/full/summary.md").read_text()
+    assert missing.read_text() == (finished / "results/full/claims.csv").read_text()
     assert not new.exists()
     assert (tree / ".cache").is_symlink()
     assert changes(tree).keys() == changes(finished).keys()

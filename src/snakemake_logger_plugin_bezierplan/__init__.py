@@ -103,15 +103,11 @@ class LogHandler(RichHandler):
 
 
 def last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """Where the results are, how long it took, what came out, and last the page."""
+    """Where the results are, how long it took, and last the page."""
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
     lines = [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
-        summary = page.with_name("summary.md")
-        text = summary.read_text(encoding="utf-8") if summary.is_file() else ""
-        headline = re.search(r"^\*\*([^*]+)\*\*$", text, re.MULTILINE)
-        lines += headline[1].replace(". ", ".\n").splitlines() if headline else []
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []
 

@@ -167,7 +167,7 @@ def describe(folder: Path, scale: str, version: str) -> None:
             folder,
             *(
                 f"{results}/{each}"
-                for each in ("summary.md", "numbers.csv", "claims.csv", "baseline_comparison.csv")
+                for each in ("numbers.csv", "claims.csv", "baseline_comparison.csv")
             ),
         )
     ]

@@ -246,9 +246,7 @@ def shown(wildcards):
         "claim_checks": CLAIMED,
         "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
     }
-    summary = [
-        f"results/{wildcards.scale}/{name}" for name in ("summary.md", "wholes.csv") if COMPARED
-    ]
+    summary = [f"results/{wildcards.scale}/wholes.csv"] if COMPARED else []
     verdicts = [f"results/{wildcards.scale}/{key}/verdict.md" for key in FOLLOWING]
     return [
         *artefacts,

@@ -43,20 +43,15 @@ rule summary:
         ],
         wholes=[f"results/{{scale}}/{key}/{tree(name)}/{name}.wholes.csv" for key, name in COMPARED],
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
-        baseline_comparison="results/{scale}/baseline_comparison.csv",
-        audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        evidence=lambda wildcards: evidence(wildcards.scale, READ),
-        sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
-        claims="results/{scale}/claims.csv",
-        wholes="results/{scale}/wholes.csv",
-        summary=report(
-            "results/{scale}/summary.md",
+        claims=report(
+            "results/{scale}/claims.csv",
             category="summary",
-            labels={"item": "summary", "shows": "the outcome of every study"},
+            labels={"item": "claims", "shows": "every claim with its verdict"},
             caption="../report/summary.rst",
         ),
+        wholes="results/{scale}/wholes.csv",
     log:
         "results/{scale}/summary.log",
     conda:
@@ -67,7 +62,7 @@ rule summary:
         "../scripts/job.py"
 
 
-# A few sentences and a small table for each paper, which stand in the summary as well.
+# A few sentences and a small table for each paper.
 rule verdict:
     input:
         summary=[

@@ -363,13 +363,8 @@ class BaselineComparison(Job):
 class Summary(Job):
     """The numbers and claims of all studies."""
 
-    scale: str
     tables: list[tuple[str, str]]
     """Study and table of each comparison with published numbers, in order."""
-    titles: dict[str, str]
-    """Those of the studies."""
-    verdicts: list[str]
-    """The studies that have sentences of what follows, in the order of these sources."""
 
     def run(self, input_files, output_files, threads):
         """Gather them."""
@@ -379,17 +374,10 @@ class Summary(Job):
         summed = summary.gathered(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
             list(input_files.wholes),
-            self.titles,
             list(input_files.claims),
-            input_files.baseline_comparison,
-            dict(zip(self.verdicts, input_files.sources, strict=True)),
-            list(input_files.audits),
-            list(input_files.evidence),
-            self.scale,
         )
         for table in ("numbers", "claims", "wholes"):
             self.write(getattr(summed, table), getattr(output_files, table))
-        Path(output_files.summary).write_text(summed.report, encoding="utf-8")
 
 
 @dataclass(frozen=True)

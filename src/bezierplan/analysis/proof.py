@@ -17,7 +17,7 @@ LIST = "verified.json"
 
 _FOLLOW = (
     *("*/problems/*.parquet", "*/paper/*", "*/beyond/*", "*/*.csv", "*/verdict.md"),
-    *("*.csv", "summary.md", "index.html"),
+    *("*.csv", "index.html"),
 )
 """Files that follow from the studies and from runs."""
 _ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}

@@ -1,6 +1,4 @@
-"""All studies together: every published number next to ours, every claim, and how many of them are
-confirmed.
-"""
+"""All studies together: every published number next to ours, every claim, and what follows."""
 
 import itertools
 from collections.abc import Mapping
@@ -10,48 +8,32 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, headline, verdict, wholes
+from bezierplan.analysis import comparison, verdict
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
-from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
-
-HEADING = "# Outcome at scale "
 
 
 class Summary(NamedTuple):
-    """The numbers and claims of all studies, columns of numbers as wholes, and the report on all of
-    them as Markdown.
-    """
+    """The numbers and claims of all studies, and columns of numbers as wholes."""
 
     numbers: pd.DataFrame
     claims: pd.DataFrame
     wholes: pd.DataFrame
-    report: str
 
 
 def gathered(
     comparison_files: Mapping[tuple[str, str], str],
     wholes_files: list[str],
-    titles: dict[str, str],
     claims_files: list[str],
-    baseline_comparison_file: str,
-    verdict_files: dict[str, str],
-    audit_files: list[str],
-    evidence: list[str],
-    scale: str,
 ) -> Summary:
     """The summary of all studies. comparison_files: by study and table. wholes_files: of the
-    same tables. titles: of the studies. verdict_files: by study. audit_files: of the same studies.
-    evidence: files of readings, and of methods beside a generic optimiser, as far as there are any.
+    same tables.
     """
-    everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
-    claims = read_claims(claims_files)
-    measured = pd.read_csv(baseline_comparison_file)
-    whole = pd.concat(map(pd.read_csv, wholes_files), ignore_index=True)
-    tables = (everything, claims, measured, whole)
-    follow = verdicts(*tables, verdict_files, audit_files, evidence)
-    text = report(*tables, titles, follow, scale)
-    return Summary(everything, claims, whole, text)
+    return Summary(
+        numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
+        read_claims(claims_files),
+        pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
+    )
 
 
 def verdicts(
@@ -63,7 +45,10 @@ def verdicts(
     audit_files: list[str],
     evidence: list[str],
 ) -> dict[str, str]:
-    """By study, what follows. files: that of its sentences; the others as in `gathered`."""
+    """By study, what follows. files: that of its sentences. measures: rows with the columns
+    `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`. evidence: files of readings, and of
+    methods beside a generic optimiser, as far as there are any.
+    """
     if not files:
         return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
@@ -149,67 +134,6 @@ def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     columns = list(claims)
     columns.insert(columns.index("verdict") + 1, "verdict_papers_size")
     return both[columns]
-
-
-def report(
-    numbers: pd.DataFrame,
-    claims: pd.DataFrame,
-    measures: pd.DataFrame,
-    whole: pd.DataFrame,
-    titles: dict[str, str],
-    follow: dict[str, str],
-    scale: str,
-) -> str:
-    """The summary of a scale as markdown: what follows for each study, the headline, columns of
-    tables as wholes, then the claims of each study with their verdicts.
-
-    measures: rows with the columns `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`.
-    follow: as from `verdicts`.
-    """
-    parts = [
-        f"{HEADING}{scale}",
-        *(f"## What follows: {titles[key]}\n\n{text.strip()}" for key, text in follow.items()),
-        "## In numbers" if follow else "",
-        headline.markdown(headline.headline(numbers, claims, measures, titles)),
-        "A published number counts if it can be tested and is not derivable from other published "
-        "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
-        "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made. "
-        "Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
-        "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
-        "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
-        "gives one. Here each claim has its verdict under the default reading; "
-        "`claims.csv` has the others too.",
-        *wholes.section(whole),
-    ]
-    for study, title in titles.items():
-        primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
-        found = primary["finding"].astype(bool)
-        if not primary.empty:
-            parts += [f"## {title}", _listed(primary[~found])]
-        if found.any():
-            parts += ["Additional findings, not claimed by the paper:", _listed(primary[found])]
-    return "\n\n".join(part for part in parts if part) + "\n"
-
-
-def _listed(claims: pd.DataFrame) -> str:
-    """Claims with their verdicts, and on what these depend, as markdown; without empty columns."""
-    columns = [
-        *("statement", "verdict", "verdict_papers_size"),
-        *("holds", "where_it_holds", "published", "effect", "n"),
-    ]
-    filled = [name for name in columns if name in claims and claims[name].notna().any()]
-    shown = claims[filled].astype(object).fillna("")
-    depends = shown["verdict"] == "depends"
-    shown.loc[depends, "verdict"] = "depends: " + claims["reason"].astype(str)
-    # Read from a file with gaps, whole numbers are floats.
-    digits = {"n": ".0f", "effect": ".3g"}
-    for column in shown.columns.intersection(list(digits)):
-        shown[column] = [
-            format(value, digits[column]) if isinstance(value, float) else value
-            for value in shown[column]
-        ]
-    return table_text(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:

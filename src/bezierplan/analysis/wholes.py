@@ -26,7 +26,6 @@ import pandas as pd
 
 from bezierplan.analysis import comparison, statistics, tables
 from bezierplan.analysis.audit_rows import place
-from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator
@@ -176,10 +175,3 @@ def _text(row: dict) -> str:
         return f"{row['printed']:g} of {row['methods']}, p {row['chance']:.2g}"
     low, high = (f"{row[end]:.3g}" for end in ("low95_predicted", "high95_predicted"))
     return f"{row['printed']:.3g} ({low} to {high})" + ("" if row["in_range"] else ", out")
-
-
-def section(whole: pd.DataFrame) -> list[str]:
-    """The part of the summary about wholes; empty without any."""
-    if whole.empty:
-        return []
-    return ["## Columns of tables as wholes", LEGEND, table_text(in_words(whole))]

@@ -445,10 +445,8 @@ def _beside_baselines(
 def summary(studies: Studies, scale: str) -> Summary:
     """All studies."""
     tables = [(key, name) for key, content in studies.items() for name in content.with_published()]
-    titles = {key: content.title for key, content in studies.items()}
-    texts = {key: file for key, content in studies.items() if (file := content.verdict_file())}
     code = [module for content in studies.values() for module in content.code_for("metrics")]
-    return Summary(scale, tables, titles, [*texts], sources=[*texts.values()], code=code)
+    return Summary(tables, code=code)
 
 
 def verdict(study: Study, scale: str) -> Verdict:
