@@ -21,7 +21,6 @@ from bezierplan.running import problems
 from bezierplan.schema import checked
 from bezierplan.study import alternatives, checks, jobs, reading
 from bezierplan.workspaces import files
-from bezierplan.workspaces.circles import Circles
 
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 SWARM = {name: value for name, value in THARWAT["settings"].items() if not isinstance(value, dict)}
@@ -124,31 +123,6 @@ def test_best_known_curves(world, best):
     assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
         best, abs=3e-4
     )
-
-
-@pytest.mark.parametrize("world", ["equal", "public"])
-def test_references_are_what_a_search_finds(world):
-    """The reference length of a problem, and the control points behind it, cannot be improved by a
-    search from many starts.
-    """
-    length, points = tharwat2018.best_curve(problem(world), 3, SAMPLES)
-    assert length == pytest.approx(THARWAT["problems"][world]["reference"], abs=1e-4)
-    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, 0.0)[0] == pytest.approx(
-        length
-    )
-    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, BETA)[0] == pytest.approx(
-        length, abs=1e-4
-    ), "it is free"
-
-
-def test_no_free_curve_is_told():
-    """One control point cannot lead round circles that all but close the way."""
-    walls = np.array([[2.0, y] for y in np.arange(-10, 10.1, 1.0)])
-    closed = problem("equal")._replace(
-        workspace=Circles((-10.0, 10.0, -10.0, 10.0), walls, np.full(len(walls), 0.9), "unit")
-    )
-    with pytest.raises(ValueError, match="no free curve of 1 control points found from 40 starts"):
-        tharwat2018.best_curve(closed, 1, SAMPLES)
 
 
 def test_local_minima():

@@ -87,7 +87,7 @@ def headline(
     grouped = {what: _grouped(counts, what) for what in ("number", "claim")}
     sentences = [
         _of_numbers(grouped["number"].sum()),
-        _of_claims(grouped["claim"].sum()) + _by_our_criterion(claims),
+        _of_claims(grouped["claim"].sum()),
         beside_baseline(measures),
     ]
     tested, counted = grouped["number"], numbers[numbers["counted"].astype(bool)]
@@ -200,19 +200,6 @@ def _of_claims(counts: pd.Series) -> str:
         if counts.any()
         else ""
     )
-
-
-def _by_our_criterion(claims: pd.DataFrame) -> str:
-    """How many claims fail by a criterion of ours alone, in words; empty if none does."""
-    if "own_criterion" not in claims:
-        return ""
-    deciding = claims[
-        claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)
-    ]
-    count = int((deciding["verdict"].map(words.groups("claim")) == "fail").sum())
-    if not count:
-        return ""
-    return f" The limit by which {count} of them fail is ours: the paper gives none."
 
 
 def _close(off: np.ndarray) -> str:

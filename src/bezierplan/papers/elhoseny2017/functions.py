@@ -162,65 +162,13 @@ def printed_lengths(published: "Published") -> pd.DataFrame:
     return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
 
 
-def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, float]:
-    """Mean absolute difference between printed and expected lengths for a side, in cells, and as a
-    share of their mean.
+def _error(printed: pd.DataFrame, side: int, radius: float) -> float:
+    """Mean absolute difference between printed and expected lengths for a side, as a share of their
+    mean.
     """
     own = printed[printed["side"] == side]
-    error = float((own["value"] - expected_length(side, radius, own["obstacles"])).abs().mean())
-    return error, error / own["value"].mean()
-
-
-def radius_fit(published: "Published", *, radii: list[float]) -> pd.DataFrame:
-    """The printed lengths of the proposed method, those expected for several obstacle radii (shares
-    of the side), and the errors of the latter.
-
-    The last rows have the radius with the least error (relative to the mean length, averaged over
-    both sides), in steps of a thousandth of the side.
-    """
-    printed = printed_lengths(published)
-    errors = radius_errors(published).groupby("radius")["relative_error"].mean()
-    best = float(errors.idxmin())
-    numbers = sorted(printed["obstacles"].unique())
-    rows = []
-    for (side, route), own in printed.groupby(["side", "route"]):
-        lengths = own.set_index("obstacles")["value"]
-        lengths_printed = {f"{n} obstacles": lengths[n] for n in numbers}
-        rows.append({"lengths": f"printed, {route}", "side": side, **lengths_printed})
-    for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
-        for side in _sides(published).values():
-            cells, share = _errors(printed, side, radius)
-            rows.append(
-                {
-                    "lengths": name,
-                    "radius / side": radius,
-                    "side": side,
-                    **{
-                        f"{n} obstacles": round(expected_length(side, radius, n), 1)
-                        for n in numbers
-                    },
-                    "mean error (cell)": round(cells, 2),
-                    "mean error / mean length": round(share, 4),
-                }
-            )
-    return pd.DataFrame(rows)[list(rows[-1])]
-
-
-def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFrame:
-    """Printed and expected lengths against the number of obstacles; columns: side, lengths (which),
-    obstacles, cells4 (in cells).
-    """
-    printed = printed_lengths(published).rename(columns={"value": "cells4"})
-    printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
-    counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
-    expected = [
-        pd.DataFrame({"obstacles": counts, "cells4": expected_length(side, radius, counts)}).assign(
-            side=side, lengths=f"R = {radius:g} N"
-        )
-        for side in _sides(published).values()
-        for radius in radii
-    ]
-    return pd.concat([printed, *expected], ignore_index=True)
+    expected = expected_length(side, radius, own["obstacles"])
+    return float((own["value"] - expected).abs().mean() / own["value"].mean())
 
 
 def radius_errors(published: "Published") -> pd.DataFrame:
@@ -229,7 +177,7 @@ def radius_errors(published: "Published") -> pd.DataFrame:
     """
     printed = printed_lengths(published)
     rows = [
-        (thousandths / 1000, side, _errors(printed, side, thousandths / 1000)[1])
+        (thousandths / 1000, side, _error(printed, side, thousandths / 1000))
         for side in _sides(published).values()
         for thousandths in range(5, 81)
     ]

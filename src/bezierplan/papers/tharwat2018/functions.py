@@ -13,9 +13,9 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
 from bezierplan.analysis.results import Results, select
-from bezierplan.geometry import curves, shortest_paths
+from bezierplan.geometry import curves
 from bezierplan.planners.parts import chaotic_maps
-from bezierplan.workspaces.problem import Problem, Workspace
+from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -29,11 +29,7 @@ BEST_KNOWN = {
     "equal": ((-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)),
     "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
 }
-# The search for such curves starts from this many random ones, first with few samples; the best
-# results are improved with all samples.
-STARTS, FEW_SAMPLES, IMPROVED = 40, 34, 10
 SAMPLES = 100  # of a path, as in the planner
-MOST_POINTS = 4  # control points of the best curves to find
 
 MOVED = 1  # the one that moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
@@ -174,93 +170,6 @@ def _landscape(results: Results) -> pd.DataFrame:
     run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
     return landscape(
         results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"])
-    )
-
-
-def best_curves(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
-    """Lengths, in units, of the best Bézier curves found with one control point and more, and of
-    the exact shortest path.
-
-    Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact
-    path its own).
-    """
-    problem = Problem("", workspace, tuple(start), tuple(target))
-    numbers = range(1, MOST_POINTS + 1)
-    rows = [("best Bézier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
-    rows += [
-        ("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers
-    ]
-    return pd.DataFrame(rows, columns=["path", "control_points", "length"])
-
-
-def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[float, np.ndarray]:
-    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bézier
-    curve that a search from many starts finds.
-
-    Length and freedom from collision are those of the given number of samples. The starts,
-    alternately random curves about the straight line and across the field, are the same in every
-    call. Raises ValueError if none of them leads to a free curve.
-    """
-    rng = generator("tharwat2018/best_curve")
-    x_low, x_high, y_low, y_high = problem.workspace.bounds
-    line = np.linspace(problem.start, problem.target, control_points + 2)[1:-1]
-    reach = math.dist(problem.start, problem.target) / 3
-    curves = []
-    for start in range(STARTS):
-        near = line + rng.normal(0, reach, line.shape)
-        anywhere = rng.uniform((x_low, y_low), (x_high, y_high), line.shape)
-        curves.append(_shortened(problem, near if start % 2 else anywhere, FEW_SAMPLES))
-    best = [
-        _shortened(problem, points[1:-1], samples)
-        for _, points in sorted(curves, key=lambda each: each[0])[:IMPROVED]
-    ]
-    length, points = min(best, key=lambda each: each[0])
-    if math.isinf(length):
-        raise ValueError(
-            f"no free curve of {control_points} control points found from {STARTS} starts"
-        )
-    return length, points
-
-
-def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float, np.ndarray]:
-    """The result of sequential quadratic programming from free control points (n, 2): length,
-    infinite if it collides, and all points.
-    """
-    from scipy import optimize
-
-    basis = curves.sample_matrix("bezier", len(free) + 2, samples)
-    ends, weights = basis[:, [0, -1]] @ np.array([problem.start, problem.target]), basis[:, 1:-1]
-    steps = np.diff(weights, axis=0)
-    centres, radii = problem.workspace.centres, problem.workspace.radii
-
-    def places(z: np.ndarray) -> np.ndarray:
-        return ends + weights @ z.reshape(free.shape)
-
-    def length(z: np.ndarray) -> tuple[float, np.ndarray]:
-        chords = np.diff(places(z), axis=0)
-        lengths = np.hypot(*chords.T)
-        return lengths.sum(), (steps.T @ (chords / np.maximum(lengths, 1e-12)[:, None])).ravel()
-
-    def outside(z: np.ndarray) -> np.ndarray:
-        return (((places(z)[:, None] - centres) ** 2).sum(axis=2) - radii**2).ravel()
-
-    def outside_slope(z: np.ndarray) -> np.ndarray:
-        return np.einsum("soj,sk->sokj", 2 * (places(z)[:, None] - centres), weights).reshape(
-            -1, z.size
-        )
-
-    rule = {"type": "ineq", "fun": outside, "jac": outside_slope}
-    end = optimize.minimize(
-        length,
-        free.ravel(),
-        jac=True,
-        method="SLSQP",
-        constraints=rule,
-        options={"maxiter": 200, "ftol": 1e-9},
-    )
-    free_curve = outside(end.x).min() >= -1e-7
-    return float(end.fun) if free_curve else math.inf, np.vstack(
-        [problem.start, end.x.reshape(free.shape), problem.target]
     )
 
 
