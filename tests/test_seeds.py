@@ -118,6 +118,7 @@ def test_nothing_that_is_judged_or_drawn_depends_on_a_number_as_seed():
         for folder in folders
         for file in folder.rglob("*.py")
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
-        if isinstance(node, ast.Attribute) and node.attr in ("default_rng", "RandomState", "seed")
+        if isinstance(node, ast.Call)
+        and getattr(node.func, "attr", "") in ("default_rng", "RandomState", "seed")
     ]
     assert numbered == []
