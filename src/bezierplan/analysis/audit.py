@@ -215,16 +215,16 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
             continue
         numbers = [possible.printed(text) for text in texts]
         added, total = float(sum(each.value for each in numbers)), count * (count + 1) // 2
-        told = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
+        arithmetic = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
         location = place(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        yield checked(item, location, rule, added, total, possible.are_ranks(numbers), told)
+        yield checked(item, location, rule, added, total, possible.are_ranks(numbers), arithmetic)
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
-            told = f"1 <= {row['printed']} <= {count}"
+            arithmetic = f"1 <= {row['printed']} <= {count}"
             of_row = place(row, [*keys, "metric"])
-            yield checked(item, of_row, rule, row["value"], limit, fits, told)
+            yield checked(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
         if possible.are_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
             n = int(sizes[0])
@@ -233,12 +233,12 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
                 f"the mean ranks tell rows apart: Friedman's test from the ranks, if of {n} runs, "
                 "at 5 %"
             )
-            told = (
+            arithmetic = (
                 f"chi-square {chi_square:.3g} with {count - 1} degrees of freedom, p = {p:.2g}; "
                 f"the largest difference is {apart:.2g}, the critical one {critical:.3g}; "
                 f"p is below {LEVEL:g} from {least} runs on"
             )
-            yield checked(item, location, rule, apart, critical, bool(p < LEVEL), told)
+            yield checked(item, location, rule, apart, critical, bool(p < LEVEL), arithmetic)
 
 
 def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:

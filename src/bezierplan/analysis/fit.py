@@ -76,20 +76,20 @@ def _p_of_group(numbers: Numbers, rng: np.random.Generator) -> float:
     return float((1 + np.sum(null <= paper)) / (1 + EXPERIMENTS))
 
 
-def moments(numbers: Numbers, chosen: np.ndarray) -> Moments:
+def moments(numbers: Numbers, choices: np.ndarray) -> Moments:
     """Moments of each choice of units (choices, units)."""
     known = ~np.isnan(numbers.values)
     values = np.where(known, numbers.values, 0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        counted, total = chosen @ known.astype(float), chosen @ values
+        counted, total = choices @ known.astype(float), choices @ values
         centre = total / counted
-        variance = np.maximum(chosen @ values**2 - total * centre, 0) / (counted - 1)
-    units = chosen.sum(axis=1, keepdims=True)
+        variance = np.maximum(choices @ values**2 - total * centre, 0) / (counted - 1)
+    units = choices.sum(axis=1, keepdims=True)
     variance = np.where(counted > 1, variance, np.nan)
     centre = np.where(numbers.counts, total / units, centre)
     if numbers.medians.any():
         own = numbers.values[:, numbers.medians]
-        several = np.ma.masked_invalid(np.where(chosen[:, :, None], own, np.nan))
+        several = np.ma.masked_invalid(np.where(choices[:, :, None], own, np.nan))
         centre[:, numbers.medians] = np.ma.median(several, axis=1).filled(np.nan)
     return Moments(centre, counted, counted / units, variance)
 

@@ -87,12 +87,12 @@ def quantities(
         for entry in spec.values:
             for named in one_or_list(entry.statistic):
                 statistic = named.replace("unstated", "median")
-                chosen = select(printed, {"metric": entry.metric, "statistic": statistic})
-                if statistic not in VOTING or chosen.empty:
+                rows = select(printed, {"metric": entry.metric, "statistic": statistic})
+                if statistic not in VOTING or rows.empty:
                     continue
-                voting = select(chosen, votes[name].get(entry.metric, {"metric": []}))
-                numbers = chosen["value"].astype(float)
-                size = chosen["n"].fillna(1)
+                voting = select(rows, votes[name].get(entry.metric, {"metric": []}))
+                numbers = rows["value"].astype(float)
+                size = rows["n"].fillna(1)
                 if statistic == "share":
                     numbers = numbers * size
                 all_quantities.append(
@@ -105,10 +105,10 @@ def quantities(
                         entry.decimals,
                         entry.least,
                         keys,
-                        chosen[keys].assign(
+                        rows[keys].assign(
                             value=numbers,
                             n=1 if spec.within else size,
-                            votes=chosen.index.isin(voting.index),
+                            votes=rows.index.isin(voting.index),
                         ),
                     )
                 )
@@ -136,13 +136,15 @@ def by_unit(quantity: Quantity, results: Results, column: str = "") -> pd.DataFr
 def groups(quantities: list[Quantity], results: dict[str, Results]) -> list[fit.Numbers]:
     """The numbers that vote, those of the same problems together."""
     together: dict[tuple, list[tuple[Quantity, pd.DataFrame]]] = {}
-    for each in quantities:
-        voting = each._replace(printed=each.printed[each.printed["votes"]])
+    for quantity in quantities:
+        voting = quantity._replace(printed=quantity.printed[quantity.printed["votes"]])
         if len(voting.printed):
-            found = results[each.experiment]
-            problem = select(found.runs, each.where)["problem"].unique()
-            values = by_unit(voting, found)
-            together.setdefault((each.experiment, *sorted(problem)), []).append((voting, values))
+            outcome = results[quantity.experiment]
+            problem = select(outcome.runs, quantity.where)["problem"].unique()
+            values = by_unit(voting, outcome)
+            together.setdefault((quantity.experiment, *sorted(problem)), []).append(
+                (voting, values)
+            )
     return [_joined(own) for own in together.values()]
 
 
@@ -167,14 +169,14 @@ def excluded(quantities: list[Quantity], results: dict[str, Results], proposed: 
     not.
     """
     below, lost = False, False
-    for each in quantities:
-        found, printed = results[each.experiment], each.printed
-        if each.least and each.statistic == "mean":
-            least = by_unit(each, found, each.least).min(axis=1).to_numpy()
-            below |= bool((printed["value"] + 0.5 * 10.0**-each.decimals < least).any())
-        if "method" in printed and metrics.METRICS[each.metric].feasible_only:
-            own = each._replace(printed=printed[printed["method"] == proposed])
-            lost |= bool((by_unit(own, _with_lost(found), "lost").mean(axis=1) >= LOST).any())
+    for quantity in quantities:
+        outcome, printed = results[quantity.experiment], quantity.printed
+        if quantity.least and quantity.statistic == "mean":
+            least = by_unit(quantity, outcome, quantity.least).min(axis=1).to_numpy()
+            below |= bool((printed["value"] + 0.5 * 10.0**-quantity.decimals < least).any())
+        if "method" in printed and metrics.METRICS[quantity.metric].feasible_only:
+            own = quantity._replace(printed=printed[printed["method"] == proposed])
+            lost |= bool((by_unit(own, _with_lost(outcome), "lost").mean(axis=1) >= LOST).any())
     reasons = {
         "a printed mean lies below the exact optimum": below,
         "the proposed method returns no path": lost,
@@ -228,7 +230,7 @@ def _without_reference(chunk: Chunk) -> Chunk:
     return chunk._replace(problems=chunk.problems | places)
 
 
-class Made(NamedTuple):
+class RunsOfMethod(NamedTuple):
     """Runs of a method in an experiment under a reading. own: whether they are others than those of
     the default.
     """
@@ -239,17 +241,17 @@ class Made(NamedTuple):
 
 
 class Runner(NamedTuple):
-    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds. kept:
-    by experiment and method, the runs of the default, which other readings share.
+    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds.
+    shared_runs: by experiment and method, the runs of the default, which other readings share.
     """
 
     assumptions: list[Assumption]
     experiments: dict[str, Experiment]
     folder: Path
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
-    kept: dict[tuple[str, str], pd.DataFrame]
+    shared_runs: dict[tuple[str, str], pd.DataFrame]
 
-    def chunks(self, reading: Reading) -> list[Made]:
+    def chunks(self, reading: Reading) -> list[RunsOfMethod]:
         """What is run under a reading; nothing if its settings exclude each other."""
         made = []
         for name, each in self.experiments.items():
@@ -258,7 +260,7 @@ class Runner(NamedTuple):
                 chunk = under(default, reading, self.assumptions)
                 if moved:
                     chunk = _without_reference(chunk)
-                made.append(Made(name, chunk, moved or chunk != default))
+                made.append(RunsOfMethod(name, chunk, moved or chunk != default))
         try:
             for chunk in (each.chunk for each in made):
                 for condition in chunk.conditions():
@@ -268,7 +270,7 @@ class Runner(NamedTuple):
             return []
         return made
 
-    def results(self, reading: Reading, chunks: list[Made]) -> dict[str, Results]:
+    def results(self, reading: Reading, chunks: list[RunsOfMethod]) -> dict[str, Results]:
         """The runs of chunks under a reading, by experiment."""
         results = {}
         for name in self.experiments:
@@ -278,13 +280,13 @@ class Runner(NamedTuple):
             results[name] = joined(runs, world, bounds)
         return results
 
-    def _runs(self, world: dict[str, Problem], made: Made) -> pd.DataFrame:
-        place = (made.experiment, made.chunk.method)
-        if made.own:
-            return execution.run_chunk(world, made.chunk)[0].to_pandas()
-        if place not in self.kept:
-            self.kept[place] = execution.run_chunk(world, made.chunk)[0].to_pandas()
-        return self.kept[place]
+    def _runs(self, world: dict[str, Problem], part: RunsOfMethod) -> pd.DataFrame:
+        place = (part.experiment, part.chunk.method)
+        if part.own:
+            return execution.run_chunk(world, part.chunk)[0].to_pandas()
+        if place not in self.shared_runs:
+            self.shared_runs[place] = execution.run_chunk(world, part.chunk)[0].to_pandas()
+        return self.shared_runs[place]
 
     def _changed(self, experiment: str, reading: Reading) -> dict[str, dict[str, Any]]:
         """The descriptions of workspaces that a reading changes."""

@@ -215,7 +215,7 @@ def library_version(name: str) -> str:
     return importlib.metadata.version(name)
 
 
-class _Reached(NamedTuple):
+class _Reach(NamedTuple):
     """What modules depend on: the digest of `source_digest`; the libraries among `COMPUTING` that
     are imported anywhere (llvmlite comes with numba); and files of source.
     """
@@ -226,7 +226,7 @@ class _Reached(NamedTuple):
 
 
 @cache
-def _reached(*modules: str) -> _Reached:
+def _reached(*modules: str) -> _Reach:
     todo, texts, libraries = [], {}, set()
     for module in map(_module, modules):
         if module.file() is None:
@@ -247,7 +247,7 @@ def _reached(*modules: str) -> _Reached:
             )
     libraries |= {"llvmlite"} if "numba" in libraries else set()
     digest = hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
-    return _Reached(digest, libraries, [module.file() for module in texts])
+    return _Reach(digest, libraries, [module.file() for module in texts])
 
 
 @cache

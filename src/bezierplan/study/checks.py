@@ -440,13 +440,13 @@ class Checks:
         study = self.study
         for name, key in assumption.workspace.items():
             check_known(name, study.workspaces, "workspace")
-            own = study.workspaces[name]
-            check_known(key, own.plain(), f"workspace: {name}")
-            if (used := own.plain()[key]) != assumption.default:
+            workspace = study.workspaces[name]
+            check_known(key, workspace.plain(), f"workspace: {name}")
+            if (used := workspace.plain()[key]) != assumption.default:
                 raise Fault(f"default: {assumption.default}: expected {used}, which {name} has")
             for value in assumption.alternatives:
                 with self.at("alternatives", str(value), name):
-                    self.names(type(own).model_validate(own.plain() | {key: value}))
+                    self.names(type(workspace).model_validate(workspace.plain() | {key: value}))
         if not assumption.setting:
             return
         methods = concerned(study, assumption)

@@ -125,13 +125,13 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     return studies
 
 
-def _stamp(folder: Path, changed: Mapping[str, Any]) -> Path | None:
+def _stamp(folder: Path, changes: Mapping[str, Any]) -> Path | None:
     """The file that says of a study that it was checked and had no fault; None if not all of its
     folder can be read. Its name is a digest of all that a fault could come from: the files of the
     study, the settings of a configuration, this package and its libraries.
     """
     try:
-        parts = [repr(changed), *_package(), str(folder.resolve()), *_contents(folder)]
+        parts = [repr(changes), *_package(), str(folder.resolve()), *_contents(folder)]
     except OSError:
         return None
     return cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
@@ -149,15 +149,15 @@ def _contents(folder: Path) -> list[str]:
     names, where links lead, and digests of files. Raises OSError.
     """
     written = [os.path.realpath(name) for name in ("results", ".snakemake")]
-    found = []
+    lines = []
     for path in sorted(folder.rglob("*")):
         target = Path(os.path.realpath(path))
         if "__pycache__" not in path.relative_to(folder).parts and not any(
             map(target.is_relative_to, written)
         ):
             content = path.read_bytes() if path.is_file() else b""
-            found.append(f"{path} {target} {hashlib.sha256(content).hexdigest()}")
-    return found
+            lines.append(f"{path} {target} {hashlib.sha256(content).hexdigest()}")
+    return lines
 
 
 def read_study(folder: Path) -> Study:

@@ -32,7 +32,7 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
     """What is to be judged below a scale's folder. Raises Fault for a folder of no scale, and
     FileNotFoundError without runs.
     """
-    scale, listed = folder.resolve().name, []
+    scale, all_tasks = folder.resolve().name, []
     for place in sorted(folder.glob("*/runs/*/*")):
         key, _, experiment, method = place.relative_to(folder).parts
         check_known(scale, SCALES, f"{folder}: scale")
@@ -44,23 +44,23 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
                 )
                 for number in jobs.chunks(study, experiment, method, scale)
             }
-            listed.append(
+            all_tasks.append(
                 Task(
                     str(folder / key / "problems" / f"{experiment}.parquet"),
                     {file: each.chunk for file, each in made.items()},
                     {file: each.digest for file, each in made.items()},
                 )
             )
-    if not listed:
+    if not all_tasks:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
         )
-    return listed
+    return all_tasks
 
 
 def of_nothing(studies: Studies, folder: Path) -> list[Path]:
     """Files in the folders of a scale that no study makes."""
-    scale, found = folder.resolve().name, []
+    scale, strangers = folder.resolve().name, []
     for key, study in studies.items():
         made = {"claims.csv", "claim_checks.csv", "audit.csv"}
         made.update(*map(study.files_of, (*study.tables, *study.figures)))
@@ -72,5 +72,5 @@ def of_nothing(studies: Studies, folder: Path) -> list[Path]:
                 made |= {f"runs/{experiment}/{method}/{n}" for n in (*chunks, "judgement.json")}
         patterns = ("*.csv", "problems/[!.]*", "paper/[!.]*", "beyond/[!.]*", "runs/*/*/[!.]*")
         files = (file for pattern in patterns for file in sorted((folder / key).glob(pattern)))
-        found += [file for file in files if str(file.relative_to(folder / key)) not in made]
-    return found
+        strangers += [file for file in files if str(file.relative_to(folder / key)) not in made]
+    return strangers

@@ -72,7 +72,7 @@ def told(
         fitting = open_ones[open_ones["p"] >= LEAST_P]
         kept = (fitting if len(fitting) else open_ones).set_index("reading")["meaning"].fillna("")
     claims = claims.assign(readings="")
-    for place, claim in claims[claims["primary"].astype(bool)].iterrows():
+    for index, claim in claims[claims["primary"].astype(bool)].iterrows():
         if claim["verdict"] not in SIDES:
             continue
         words = []
@@ -83,12 +83,12 @@ def told(
         if len(readings):
             own = verdicts[verdicts["id"] == claim["id"]].set_index("reading")["verdict"]
             own = own[own.index.isin(kept.index)]
-            claims.loc[place, "readings"] = _counted(claim["verdict"], own)
+            claims.loc[index, "readings"] = _counted(claim["verdict"], own)
             words += _turned(claim["verdict"], own, kept)
         if words:
             told_first = f"{claim['verdict']} by default, {', '.join(words)}"
-            claims.loc[place, "verdict"] = "depends"
-            claims.loc[place, "reason"] = "; ".join(filter(None, [told_first, claim["reason"]]))
+            claims.loc[index, "verdict"] = "depends"
+            claims.loc[index, "reason"] = "; ".join(filter(None, [told_first, claim["reason"]]))
     return claims
 
 

@@ -64,7 +64,7 @@ def smoothest(studies: dict[str, SimpleNamespace]) -> list[tuple[SimpleNamespace
     bend less than the baseline, the one whose tightest bend is widest: the study, and its row of
     the comparison with the baseline.
     """
-    found = []
+    pairs = []
     for study in studies.values():
         smooth = [
             row
@@ -74,5 +74,5 @@ def smoothest(studies: dict[str, SimpleNamespace]) -> list[tuple[SimpleNamespace
             and row["curvature"] < 1 - EQUAL
         ]
         if smooth:
-            found.append((study, min(smooth, key=lambda row: row["curvature"])))
-    return found
+            pairs.append((study, min(smooth, key=lambda row: row["curvature"])))
+    return pairs

@@ -72,16 +72,16 @@ def studies(
     pages = {}
     for key, described in job.studies.items():
         files = {name: read(folder / key / FILES[name]) for name in described.files}
-        own = evidence and evidence.of(key)
-        if own:
-            files |= {"claims": own.claims, "checks": own.checks}
+        substitute = evidence and evidence.of(key)
+        if substitute:
+            files |= {"claims": substitute.claims, "checks": substitute.checks}
         claims = _claims(key, described, files)
         counted = of_study(numbers, key)
         own_tables = [
-            _table(key, name, each, folder, described.labels, counted, own)
+            _table(key, name, each, folder, described.labels, counted, substitute)
             for name, each in described.tables.items()
         ]
-        baseline = own.measures if own else of_study(measured, key)
+        baseline = substitute.measures if substitute else of_study(measured, key)
         verdict = folder / key / "verdict.md"
         pages[key] = SimpleNamespace(
             key=key,

@@ -107,19 +107,19 @@ def _pooled_row(
     """
     from scipy import stats
 
-    own, theirs, size = np.array(
+    ours, theirs, size = np.array(
         [
             [table["proposed", metric], table["ref12", metric], trials[name]]
             for name, table in tables.items()
         ]
     ).T
-    both = own + theirs
-    apart = float((own - both / 2).sum())
+    both = ours + theirs
+    apart = float((ours - both / 2).sum())
     variance = float((both * (2 * size - both) / (4 * (2 * size - 1))).sum())
     chi_square = max(abs(apart) - 0.5, 0.0) ** 2 / variance
     p = float(stats.chi2.sf(chi_square, 1))
     told = (
-        f"{own.sum():.0f} against {theirs.sum():.0f} of {size.sum():.0f}; chi-square "
+        f"{ours.sum():.0f} against {theirs.sum():.0f} of {size.sum():.0f}; chi-square "
         f"{chi_square:.2g}, p = {p:.2g}"
     )
     rule = (

@@ -289,9 +289,9 @@ def _opened(planner: str) -> set[Path]:
     libraries = (sys.prefix, str(PACKAGE), str(cache_folder()))
     opened = set()
 
-    def note(event: str, given: tuple[Any, ...]) -> None:
-        if event == "open" and isinstance(given[0], str | bytes):
-            file = os.path.realpath(os.fsdecode(given[0]))
+    def note(event: str, arguments: tuple[Any, ...]) -> None:
+        if event == "open" and isinstance(arguments[0], str | bytes):
+            file = os.path.realpath(os.fsdecode(arguments[0]))
             if Path(file).is_relative_to(study) and not file.startswith(libraries):
                 opened.add(Path(file))
 
@@ -299,16 +299,16 @@ def _opened(planner: str) -> set[Path]:
     return opened
 
 
-def _refuse_opened(name: str, planner: str, opened: set[Path]) -> None:
+def _refuse_opened(name: str, planner: str, files: set[Path]) -> None:
     """Raise PlannerFailure for an opened file of which no digest would show a change."""
-    for file in sorted(opened):
+    for file in sorted(files):
         if file.is_file() and not covers(planner, file):
             raise PlannerFailure(
                 f"{name}: opens {file.parent.name}/{file.name}; runs would not be made again after "
                 "a change of it: its values are settings, or stand in a module that the planner "
                 "imports"
             )
-    opened.clear()
+    files.clear()
 
 
 def _refuse_left(name: str) -> None:
