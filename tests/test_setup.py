@@ -14,6 +14,7 @@ TARGETS = {
     "help",
     "reproduce",
     "smoke",
+    "smoke-digests",
     "beyond",
     "extended",
     "test",

@@ -22,9 +22,12 @@ from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = checked.read(
-    File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml"
-)["settings"]
+FILE = File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml"
+SETTINGS = {
+    name: value
+    for name, value in checked.read(FILE)["settings"].items()
+    if not isinstance(value, dict)
+}
 FIELD = Problem(
     "field",
     Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"),

@@ -84,11 +84,11 @@ def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:
-    """Raise Unfit for a history that rises; or, of a planner that keeps the best path, does not end
-    with the objective of its path.
+    """Raise Unfit for the history of a planner that keeps the best path, if it rises, or does not
+    end with the objective of its path.
     """
-    if (plan.history[1:] > plan.history[:-1]).any():
-        raise Unfit("history: rises; expected the best objective so far")
+    if keeps_best and (plan.history[1:] > plan.history[:-1]).any():
+        raise Unfit("history: rises; expected the best objective so far, or keeps_best = False")
     if keeps_best and plan.path and plan.history[-1] != plan.objective:
         raise Unfit(
             f"objective: {plan.objective}; expected the last of history, {plan.history[-1]}, or "

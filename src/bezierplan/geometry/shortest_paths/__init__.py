@@ -49,7 +49,7 @@ def shortest_path(problem: Problem) -> Bound:
     >>> round(found.length, 6)
     4.130649
     >>> found.points.tolist()
-    [[0.5, 0.5], [1.0, 2.0], [3.5, 2.5]]
+    [[0.5, 0.5], [3.0, 1.0], [3.5, 2.5]]
     """
     blocked = region(problem.workspace)
     for point in (problem.start, problem.target):
