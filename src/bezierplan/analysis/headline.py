@@ -87,7 +87,7 @@ def headline(
     grouped = {what: _grouped(counts, what) for what in ("number", "claim")}
     sentences = [
         _of_numbers(grouped["number"].sum()),
-        _of_claims(grouped["claim"].sum()),
+        _of_claims(grouped["claim"].sum()) if len(claims) else "",
         beside_baseline(measures),
     ]
     tested, counted = grouped["number"], numbers[numbers["counted"].astype(bool)]
@@ -95,7 +95,7 @@ def headline(
         word=[word(claims[claims["study"] == study]) for study in counts.index],
         tested=tested["agree"] + tested["disagree"],
         agree=tested["agree"],
-        close=[_close(deviations(counted[counted["study"] == study])) for study in counts.index],
+        close=[_close(counted[counted["study"] == study]) for study in counts.index],
     )
     order = sorted(counts.index, key=list(titles).index)
     proposed = measures[measures["proposed"].astype(bool)].set_index("study")
@@ -175,9 +175,8 @@ def beside_baseline(measures: pd.DataFrame) -> str:
     )
     if smoother.empty:
         return f"{text}, and none a smoother one."
-    ends = [number(smoother["length"].agg(end)) for end in ("min", "max")]
-    times = ends[0] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
-    return f"{text}, and {len(smoother)} a smoother one, {times} times as long."
+    low, high = (number(smoother["length"].agg(end)) for end in ("min", "max"))
+    return f"{text}, and {len(smoother)} a smoother one, {low} to {high} times as long."
 
 
 def _of_numbers(counts: pd.Series) -> str:
@@ -185,7 +184,7 @@ def _of_numbers(counts: pd.Series) -> str:
     total, agree = int(counts.sum()), int(counts["agree"])
     return (
         f"Of {baseline_comparison.counted(total, 'printed number')} {agree + counts['disagree']} "
-        f"can be tested; {agree} of these {'reproduces' if agree == 1 else 'reproduce'}."
+        f"can be tested; of these reproduce {agree}."
         if total
         else ""
     )
@@ -194,16 +193,15 @@ def _of_numbers(counts: pd.Series) -> str:
 def _of_claims(counts: pd.Series) -> str:
     """How many claims hold, and how many fail. counts: by group."""
     return (
-        f"Of {baseline_comparison.counted(int(counts.sum()), 'claim')} {counts['hold']} hold, "
+        f"Of {baseline_comparison.counted(counts.sum(), 'claim')} {counts['hold']} hold, "
         f"{counts['partly']} hold in part, {counts['fail']} fail, and {counts['open']} cannot be "
         "decided."
-        if counts.any()
-        else ""
     )
 
 
-def _close(off: np.ndarray) -> str:
-    return f"{int((off <= CLOSE).sum())} of {len(off)}" if len(off) else ""
+def _close(numbers: pd.DataFrame) -> str:
+    off = deviations(numbers)
+    return f"{(off <= CLOSE).sum()} of {len(off)}"
 
 
 def _grouped(counts: pd.DataFrame, what: str) -> pd.DataFrame:

@@ -176,11 +176,7 @@ def _table(
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
     # A column is judged as a whole by many runs alone.
-    columns = pd.DataFrame()
-    if evidence:
-        columns = evidence.wholes[evidence.wholes["table"] == name]
-    elif folder.name == "extended":
-        columns = read(folder / f"{row['stem']}.wholes.csv")
+    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else pd.DataFrame()
     whole = wholes.in_words(columns) if len(columns) else columns
     laid = _laid(folder / f"{row['stem']}.csv", spec, cells)
     return row | {"numbers": cells, "laid": laid, "whole": whole}

@@ -29,7 +29,6 @@ BEST_KNOWN = {
     "equal": ((-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)),
     "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
 }
-SAMPLES = 100  # of a path, as in the planner
 
 MOVED = 1  # the one that moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
