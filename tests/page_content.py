@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 
+import checks_of_claims
 import pandas as pd
 from pivots import pivot_of
 
 from bezierplan.analysis import wholes
-from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
     Citation,
@@ -109,7 +109,7 @@ def job() -> PageJob:
         methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
         claims={
             name: SimpleNamespace(
-                checks=[kinds.check_of(LOWER)],
+                checks=[checks_of_claims.check_of(LOWER)],
                 holds="any",
                 variants={"metric": ["length", "objective"]},
             )

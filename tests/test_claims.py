@@ -8,13 +8,14 @@ import math
 from pathlib import Path
 from types import SimpleNamespace
 
+import checks_of_claims
 import numpy as np
 import pandas as pd
 import pytest
 from scipy import stats
 
 from bezierplan.analysis import metrics, statistics, words
-from bezierplan.analysis.claims import columns, kinds, sentences, variants, verdicts
+from bezierplan.analysis.claims import columns, sentences, variants, verdicts
 from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
@@ -191,11 +192,11 @@ def test_any_names_make_right_sentences(names, together, tmp_path):
     assert [row["group"], row["relation"], row["other"]] == [group, "lower than", other]
     assert json.loads(row["place"]) == {"workspace": "a, b=c"}
     row = row.astype(object).where(row.notna(), None)
-    said = sentences.why(row, kinds.check_of(check), dict(zip(names, labels)), False)
+    said = sentences.why(row, checks_of_claims.check_of(check), dict(zip(names, labels)), False)
     assert f", {labels[0]} is 1 m lower than {labels[1]} (95 % interval" in said
     assert said.startswith("Workspace a, b=c: in final value of the planner's objective, ")
     title = "all 1 together" if together else f"{labels[0]} lower than {labels[1]}"
-    named = sentences.title(row, kinds.check_of(check), dict(zip(names, labels)))
+    named = sentences.title(row, checks_of_claims.check_of(check), dict(zip(names, labels)))
     assert named == f"{title}, workspace a, b=c"
 
 
@@ -727,7 +728,9 @@ def test_variants_take_the_place_of_what_the_checks_name():
 
 
 def test_variant_that_is_a_list_is_exchanged_member_by_member():
-    check = kinds.check_of(LOWER | {"than": ["b", "c"], "where": {"method": ["a", "b", "c"]}})
+    check = checks_of_claims.check_of(
+        LOWER | {"than": ["b", "c"], "where": {"method": ["a", "b", "c"]}}
+    )
     (changed,) = variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
     assert (changed.than, changed.where) == (["e", "f"], {"method": ["a", "e", "f"]})
     assert variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [check]

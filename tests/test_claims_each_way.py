@@ -14,6 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from checks_of_claims import check_of
 from studies import FOLDER as STUDIES
 from studies import KEYS, study
 
@@ -21,7 +22,7 @@ from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import check_of, kinds
+from bezierplan.analysis.claims.kinds import kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018

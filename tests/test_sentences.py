@@ -3,9 +3,10 @@
 import json
 from types import SimpleNamespace
 
+import checks_of_claims
 import pytest
 
-from bezierplan.analysis.claims import kinds, sentences
+from bezierplan.analysis.claims import sentences
 
 ROW = {
     "test": "lower",
@@ -127,7 +128,7 @@ NEEDED = {
 
 
 def check_of(test, **written):
-    return kinds.check_of({"test": test} | NEEDED[test] | written)
+    return checks_of_claims.check_of({"test": test} | NEEDED[test] | written)
 
 
 @pytest.mark.parametrize(("row", "check", "terms", "sentence"), SENTENCES.values(), ids=SENTENCES)

@@ -129,13 +129,6 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
     workspaces.shade(axes, frame)
     workspaces.scale(axes, unit)
-    show(axes, frame)
-    row, dropped = frame.iloc[0], frame.loc[frame["part"] == "dropped", "number"].nunique()
-    return Note(f"step {row['time']:.0f}, plans discarded: {dropped}", f"run {row['run']}")
-
-
-def show(axes: Axes, frame: pd.DataFrame) -> None:
-    """Draw the rows of a moment over its obstacles."""
     circles = frame[frame["part"] == "circle"]
     if len(circles):
         arrows = _ARROW_STEPS * circles[["x_velocity", "y_velocity"]].to_numpy()
@@ -148,3 +141,5 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
     for _, plan in frame[frame["part"] == "dropped"].groupby("number"):
         axes.plot(plan["x"], plan["y"], **_DROPPED)
     style.draw_parts(axes, frame, _LOOK, clip_on=False)
+    row, dropped = frame.iloc[0], frame.loc[frame["part"] == "dropped", "number"].nunique()
+    return Note(f"step {row['time']:.0f}, plans discarded: {dropped}", f"run {row['run']}")

@@ -22,7 +22,6 @@ import importlib
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from bezierplan.analysis.claims.check import Check
 
@@ -30,11 +29,6 @@ from bezierplan.analysis.claims.check import Check
 def kind_of(check: Check) -> ModuleType:
     """The file of a check's kind of test."""
     return importlib.import_module(f"{__name__}.{check.test}")
-
-
-def check_of(values: dict[str, Any]) -> Check:
-    """The check of a job, from its plain values."""
-    return kinds()[values["test"]].model_validate(values)
 
 
 @cache

@@ -1,0 +1,11 @@
+"""Checks of claims, from the plain values of a file."""
+
+from typing import Any
+
+from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.kinds import kinds
+
+
+def check_of(values: dict[str, Any]) -> Check:
+    """The check."""
+    return kinds()[values["test"]].model_validate(values)
