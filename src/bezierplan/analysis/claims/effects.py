@@ -79,7 +79,7 @@ class Comparison(NamedTuple):
     note: str = ""
 
     @property
-    def seed_name(self) -> str:
+    def seed(self) -> str:
         """The name of its place, by which random draws are seeded."""
         return ", ".join(f"{column}={value}" for column, value in self.place)
 
@@ -279,7 +279,7 @@ def drawn_points(
                 len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
             )
             own = "" if comparison.paired else f"/{comparison.cells[number]}"
-            rng = generator(f"{name}/{comparison.seed_name}/{stratum_name}{own}")
+            rng = generator(f"{name}/{comparison.seed}/{stratum_name}{own}")
             total[:, number] += statistics.resampled(statistic, values, drawn, rng)
     return total / len(comparison.strata)
 
