@@ -231,9 +231,12 @@ EDITS = {
         "config/studies/song2016/workspaces/figure2.txt",
         "....##....######\n",
         "....##.....#####\n",
-        {"problems": 1, "bounds": 1, "figure figure2": 1, "audit": 1} | runs(2) | OF_RUNS,
+        {"problems": 1, "bounds": 1, "figure figure2": 1, "audit": 1}
+        | runs(2, GENETIC)
+        | runs(1, ["rounded"])
+        | OF_RUNS,
     ),
-    "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | OF_RUNS),
+    "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1, GENETIC) | OF_RUNS),
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", OF_RUNS),
     "a label": (
         "config/studies/song2016/artefacts.yaml",
