@@ -302,7 +302,7 @@ def _opened(planner: str) -> set[Path]:
 def _refuse_opened(name: str, planner: str, files: set[Path]) -> None:
     """Raise PlannerFailure for an opened file of which no digest would show a change."""
     for file in sorted(files):
-        if file.is_file() and not covers(planner, file):
+        if file.is_file() and str(file) != planner and not covers(planner, file):
             raise PlannerFailure(
                 f"{name}: opens {file.parent.name}/{file.name}; runs would not be made again after "
                 "a change of it: its values are settings, or stand in a module that the planner "
