@@ -56,7 +56,7 @@ def targets():
         return []
     words, _ = get_argument_parser().parse_known_args(sys.argv[1:])
     jobs = words.target_jobs or []
-    return [*words.targets, *(dict(job.wildcards).get("study", "all") for job in jobs)]
+    return [*words.targets, *(job.wildcards_dict.get("study", "all") for job in jobs)]
 
 
 # A target of one study starts without the others.
