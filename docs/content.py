@@ -14,7 +14,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from bezierplan.analysis import outcome
+from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault

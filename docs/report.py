@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import content
 
-from bezierplan.analysis import outcome
+from bezierplan.analysis.outcome import outcome
 from bezierplan.figures.page import build, reader
 
 # The first is Chromium without windows, which needs half the CPU time of the others.

@@ -8,7 +8,7 @@ import checks_of_claims
 import pandas as pd
 from pivots import pivot_of
 
-from bezierplan.analysis import wholes
+from bezierplan.analysis.numbers import wholes
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
     Citation,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis.verification import TIMES
+from bezierplan.analysis.outcome.verification import TIMES
 from bezierplan.places import TREE
 
 KEPT = Path(__file__).parent / "data" / "smoke.csv"

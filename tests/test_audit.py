@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy import stats
 from studies import FOLDER
 
-from bezierplan.analysis import audit, possible
+from bezierplan.analysis.audit import audit, possible
 from bezierplan.analysis.table_kinds import Monotone
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import baseline_comparison, measures, metrics
+from bezierplan.analysis import measures, metrics
+from bezierplan.analysis.numbers import baseline_comparison
 from bezierplan.analysis.results import Results
 from bezierplan.papers.elhoseny2017 import metrics as elhoseny2017
 from bezierplan.workspaces.grid import from_lines

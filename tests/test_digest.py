@@ -172,7 +172,7 @@ def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
 def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_on(monkeypatch):
     """A straight line needs no library of geometry, a table of runs needs pandas."""
     real = digests.library_version
-    line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.tables"
+    line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.numbers.tables"
     before = {name: digests.versioned_digest(name) for name in (line, table)}
     monkeypatch.setattr(
         digests, "library_version", lambda name: "99" if name == "pandas" else real(name)

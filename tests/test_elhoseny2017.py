@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from studies import study
 
-from bezierplan.analysis import audit
+from bezierplan.analysis.audit import audit
 from bezierplan.analysis.claims.kinds import function
 from bezierplan.analysis.results import Results
 from bezierplan.papers.elhoseny2017 import audit as own_audit

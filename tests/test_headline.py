@@ -7,7 +7,8 @@ import math
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import comparison, headline
+from bezierplan.analysis.numbers import comparison
+from bezierplan.analysis.outcome import headline
 
 
 def numbers(*rows):

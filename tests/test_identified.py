@@ -10,8 +10,10 @@ import pandas as pd
 import pytest
 from studies import FOLDER, drawing
 
-from bezierplan.analysis import audit, identified, measures, outcome
+from bezierplan.analysis import measures
+from bezierplan.analysis.audit import audit, identified
 from bezierplan.analysis.claims import verdicts
+from bezierplan.analysis.outcome import outcome
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.papers.song2016 import metrics as song2016
 from bezierplan.places import TREE

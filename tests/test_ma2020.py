@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from studies import drawing
 
-from bezierplan.analysis import audit
+from bezierplan.analysis.audit import audit
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.papers.ma2020 import audit as own_audit

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import headline, outcome, summary
+from bezierplan.analysis.outcome import headline, outcome, summary
 from bezierplan.commands import outcome as command
 from bezierplan.commands import studies_of
 

@@ -8,8 +8,9 @@ import pytest
 from pivots import pivot_of
 from studies import built, studies
 
-from bezierplan.analysis import fit, outcome, readings
 from bezierplan.analysis.claims import by_reading
+from bezierplan.analysis.outcome import outcome
+from bezierplan.analysis.readings import fit, readings
 from bezierplan.analysis.results import Results
 from bezierplan.places import TREE
 from bezierplan.running import execution

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import audit, results
+from bezierplan.analysis import results
+from bezierplan.analysis.audit import audit
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 

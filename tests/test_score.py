@@ -6,7 +6,7 @@ import pytest
 
 import bezierplan as bp
 from bezierplan.__main__ import main
-from bezierplan.analysis import benchmark
+from bezierplan.analysis.numbers import benchmark
 
 
 def test_summaries_count_free_runs_and_take_the_excess_of_these():

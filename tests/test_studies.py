@@ -12,7 +12,8 @@ from studies import FOLDER as STUDIES
 from studies import KEYS, arguments, drawing
 from studies import study as shared
 
-from bezierplan.analysis import audit, metrics, rules
+from bezierplan.analysis import metrics
+from bezierplan.analysis.audit import audit, rules
 from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.planners import chaotic_pso

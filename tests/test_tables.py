@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 from pivots import pivot_of
 
-from bezierplan.analysis import comparison, listing, metrics, statistics, table_kinds, tables
+from bezierplan.analysis import metrics, statistics, table_kinds
+from bezierplan.analysis.numbers import comparison, listing, tables
 from bezierplan.analysis.results import Results
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import outcome, summary, verdict
+from bezierplan.analysis.outcome import outcome, summary, verdict
 from bezierplan.commands import studies_of
 from bezierplan.places import TREE
 

@@ -11,7 +11,7 @@ from scipy import stats
 from studies import studies
 
 from bezierplan import __main__
-from bezierplan.analysis import verification
+from bezierplan.analysis.outcome import verification
 
 
 def rows(values, unit="m", n=50, width=1.0):

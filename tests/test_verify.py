@@ -18,7 +18,7 @@ import starts
 from chunks import CHUNK, MADE
 
 from bezierplan.__main__ import main
-from bezierplan.analysis import proof
+from bezierplan.analysis.outcome import proof
 from bezierplan.machine import digest
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, recheck, rows

@@ -6,7 +6,9 @@ import pytest
 from pivots import pivot_of
 from scipy import stats
 
-from bezierplan.analysis import comparison, outcome, statistics, wholes
+from bezierplan.analysis import statistics
+from bezierplan.analysis.numbers import comparison, wholes
+from bezierplan.analysis.outcome import outcome
 from bezierplan.analysis.results import Results
 from bezierplan.places import TREE
 from bezierplan.workspaces.grid import from_lines

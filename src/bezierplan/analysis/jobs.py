@@ -15,9 +15,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.assumptions import Assumption, Experiment, Reading
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Display
+from bezierplan.analysis.readings.assumptions import Assumption, Experiment, Reading
 from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.running.chunk import Chunk
@@ -173,7 +173,8 @@ class TableOfRuns(Job):
 
     def run(self, input_files, output_files, threads):
         """Make the table and its comparison."""
-        from bezierplan.analysis import comparison, results, study_code, tables, wholes
+        from bezierplan.analysis import results, study_code
+        from bezierplan.analysis.numbers import comparison, tables, wholes
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
@@ -212,7 +213,8 @@ class TableWithoutRuns(Job):
 
     def run(self, input_files, output_files, threads):
         """Make the table."""
-        from bezierplan.analysis import listing, study_code
+        from bezierplan.analysis import study_code
+        from bezierplan.analysis.numbers import listing
         from bezierplan.running import inputs
 
         published, functions = inputs.by_table(input_files.sources), study_code.functions(self.code)
@@ -285,8 +287,9 @@ class Readings(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the readings."""
-        from bezierplan.analysis import readings, results, study_code
+        from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import by_reading
+        from bezierplan.analysis.readings import readings
         from bezierplan.running import inputs
 
         functions = study_code.functions(self.code)
@@ -321,7 +324,8 @@ class Audit(Job):
 
     def run(self, input_files, output_files, threads):
         """Check the numbers."""
-        from bezierplan.analysis import audit, study_code
+        from bezierplan.analysis import study_code
+        from bezierplan.analysis.audit import audit
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
@@ -347,7 +351,7 @@ class BaselineComparison(Job):
 
     def run(self, input_files, output_files, threads):
         """Measure the methods."""
-        from bezierplan.analysis import baseline_comparison
+        from bezierplan.analysis.numbers import baseline_comparison
         from bezierplan.running import inputs
 
         rows = baseline_comparison.of_studies(
@@ -368,7 +372,8 @@ class Summary(Job):
 
     def run(self, input_files, output_files, threads):
         """Gather them."""
-        from bezierplan.analysis import study_code, summary
+        from bezierplan.analysis import study_code
+        from bezierplan.analysis.outcome import summary
 
         study_code.functions(self.code)
         summed = summary.gathered(
@@ -390,7 +395,7 @@ class Verdict(Job):
         """Put the numbers into the sentences."""
         import pandas as pd
 
-        from bezierplan.analysis import summary
+        from bezierplan.analysis.outcome import summary
 
         tables = [pd.read_csv(file) for file in input_files.summary]
         files = {self.study: input_files.sources[0]}

@@ -5,8 +5,9 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import drawings, rules
+from bezierplan.analysis import drawings
 from bezierplan.analysis import metrics as metrics  # whose names no study declares anew
+from bezierplan.analysis.audit import rules
 from bezierplan.machine.modules import module
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import outcome
+from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import studies_of
 from bezierplan.study.page import settings_of
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan import api
-from bezierplan.analysis import benchmark
+from bezierplan.analysis.numbers import benchmark
 from bezierplan.commands.arguments import Settings
 
 

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bezierplan.analysis import proof, verification
+from bezierplan.analysis.outcome import proof, verification
 from bezierplan.commands import config_of, cores, studies_of, study_named
 from bezierplan.places import STUDIES
 

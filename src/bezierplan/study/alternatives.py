@@ -4,8 +4,8 @@ import itertools
 from collections.abc import Iterable
 from typing import Any
 
-from bezierplan.analysis import assumptions as plain
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.readings import assumptions as plain
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study

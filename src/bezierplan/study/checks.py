@@ -13,9 +13,10 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from bezierplan.analysis import metrics, statistics, study_code, verdict
+from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.outcome import verdict
 from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel

@@ -5,7 +5,6 @@ for each rule makes its job from a study, or all, and the rule's wildcards.
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.analysis import assumptions
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.jobs import (
     Audit,
@@ -21,6 +20,7 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     Verdict,
 )
+from bezierplan.analysis.readings import assumptions
 from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy

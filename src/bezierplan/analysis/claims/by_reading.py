@@ -20,7 +20,7 @@ from bezierplan.analysis.claims import judge
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.analysis.readings import LEAST_P
+from bezierplan.analysis.readings.readings import LEAST_P
 
 SIDES = {"supported": "holds", "partly": "holds", "contradicted": "fails", "no effect": "nothing"}
 """Decided verdict -> its side."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, metrics
+from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUP_KEYS, Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
@@ -18,6 +18,7 @@ from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
+from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.results import pick, repeated, select
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import one_or_list

@@ -5,7 +5,7 @@ use on a map of one's own.
 from types import SimpleNamespace
 
 from bezierplan.analysis import words
-from bezierplan.analysis.baseline_comparison import EQUAL
+from bezierplan.analysis.numbers.baseline_comparison import EQUAL
 from bezierplan.figures.page.reader import Row
 
 OFTEN = 0.9

@@ -14,8 +14,10 @@ from typing import Any
 
 import bezierplan
 from bezierplan import places
-from bezierplan.analysis import baseline_comparison, headline, wholes, words
+from bezierplan.analysis import words
 from bezierplan.analysis.claims.sentences import meaning
+from bezierplan.analysis.numbers import baseline_comparison, wholes
+from bezierplan.analysis.outcome import headline
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 

@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import comparison, naming, wholes
+from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
+from bezierplan.analysis.numbers import comparison, wholes
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis import rules
-from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.audit import rules
+from bezierplan.analysis.audit.rows import checked, compared
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.papers.elhoseny2017.functions import (
     counts,

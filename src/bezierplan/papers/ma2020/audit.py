@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis import rules
-from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.audit import rules
+from bezierplan.analysis.audit.rows import checked, compared
 from bezierplan.geometry import curves
 from bezierplan.papers.ma2020.functions import side_of_maps
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import rules
-from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.audit import rules
+from bezierplan.analysis.audit.rows import checked, compared
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published

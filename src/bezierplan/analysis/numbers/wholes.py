@@ -24,8 +24,9 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, statistics, tables
-from bezierplan.analysis.audit_rows import place
+from bezierplan.analysis import statistics
+from bezierplan.analysis.audit.rows import place
+from bezierplan.analysis.numbers import comparison, tables
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import identified, possible
-from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place, together
+from bezierplan.analysis.audit import identified, possible
+from bezierplan.analysis.audit.rows import COLUMNS, NOT_KEYS, checked, place, together
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Monotone, Pivot

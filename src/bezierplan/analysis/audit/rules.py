@@ -16,7 +16,7 @@ import re
 
 import pandas as pd
 
-from bezierplan.analysis.audit_rows import compared, together
+from bezierplan.analysis.audit.rows import compared, together
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:

@@ -48,7 +48,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import identified, metrics, possible, statistics, tables
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.audit import identified, possible
+from bezierplan.analysis.numbers import tables
 from bezierplan.analysis.results import Results, groups, published_table, select
 from bezierplan.analysis.table_kinds import Identify, Pivot
 from bezierplan.schema.model import one_or_list

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, verdict
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.analysis.numbers import comparison
+from bezierplan.analysis.outcome import verdict
 
 
 class Summary(NamedTuple):

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import baseline_comparison, comparison, words
+from bezierplan.analysis import words
 from bezierplan.analysis.markdown import table_text
+from bezierplan.analysis.numbers import baseline_comparison, comparison
 
 PAPERS = {
     "word": "outcome",

@@ -24,8 +24,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, fit, metrics
-from bezierplan.analysis.assumptions import Assumption, Experiment, Reading
+from bezierplan.analysis import metrics
+from bezierplan.analysis.numbers import comparison
+from bezierplan.analysis.readings import fit
+from bezierplan.analysis.readings.assumptions import Assumption, Experiment, Reading
 from bezierplan.analysis.results import Results, joined, published_table, select
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import possible
-from bezierplan.analysis.audit_rows import NOT_KEYS, checked, place
+from bezierplan.analysis.audit import possible
+from bezierplan.analysis.audit.rows import NOT_KEYS, checked, place
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid

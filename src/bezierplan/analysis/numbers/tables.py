@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, possible, statistics
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, repeated, select
 from bezierplan.analysis.table_kinds import Pivot
 

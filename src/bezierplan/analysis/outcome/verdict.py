@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import pandas as pd
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.audit_rows import RELATIONS
+from bezierplan.analysis.audit.rows import RELATIONS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import select
 from bezierplan.schema import checked

@@ -12,8 +12,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import benchmark, headline, summary, words
+from bezierplan.analysis import words
 from bezierplan.analysis.markdown import table_text
+from bezierplan.analysis.numbers import benchmark
+from bezierplan.analysis.outcome import headline, summary
 from bezierplan.running.inputs import PAPER
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
