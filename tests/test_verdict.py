@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis.outcome import outcome, summary, verdict
+from bezierplan.analysis.outcome import outcome, verdict
 from bezierplan.commands import studies_of
 from bezierplan.places import TREE
 
@@ -55,7 +55,9 @@ def test_a_sentence_whose_numbers_change_is_computed_again(kept):
     numbers.loc[named, "verdict"] = "disagrees"
     *_, last = verdict.sentences(template, rows | {"numbers": numbers})
     assert last.fails == "named > 4: 0 and 4.0"
-    assert "8 shortest" not in verdict.markdown(template, rows | {"numbers": numbers})
+    text = verdict.markdown(template, rows | {"numbers": numbers}, {"aco": "ACO"})
+    assert "8 shortest" not in text
+    assert "| ACO | " in text
 
 
 def test_values_that_are_not_there_take_the_sentence_away(kept):
@@ -67,11 +69,6 @@ def test_values_that_are_not_there_take_the_sentence_away(kept):
         if "Friedman" in found.text
     ]
     assert ranks.fails.startswith("a value is missing")
-
-
-def test_a_study_without_sentences_has_no_verdict(kept):
-    tables = [kept[name] for name in ("numbers", "claims", "baseline", "wholes")]
-    assert summary.verdicts(*tables, {}, [], []) == {}
 
 
 def test_a_value_that_is_no_number_takes_the_sentence_away():

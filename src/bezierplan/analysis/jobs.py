@@ -390,6 +390,7 @@ class Verdict(Job):
     """What follows for a paper."""
 
     study: str
+    labels: dict[str, str]
 
     def run(self, input_files, output_files, threads):
         """Put the numbers into the sentences."""
@@ -398,7 +399,7 @@ class Verdict(Job):
         from bezierplan.analysis.outcome import summary
 
         tables = [pd.read_csv(file) for file in input_files.summary]
-        files = {self.study: input_files.sources[0]}
+        files = {self.study: (input_files.sources[0], self.labels)}
         texts = summary.verdicts(*tables, files, [input_files.audit], list(input_files.evidence))
         Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 

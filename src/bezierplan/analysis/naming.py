@@ -1,5 +1,6 @@
 """Amounts with their units, and names as they are printed."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -27,3 +28,11 @@ def printed(value: Any, column: str, labels: Mapping[str, str]) -> str:
 def column_name(column: str, labels: Mapping[str, str]) -> str:
     """How a column or a metric is printed."""
     return labels.get(column, column.replace("_", " "))
+
+
+def heading(name: str) -> str:
+    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure
+    gallery.
+    """
+    words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))
+    return words[:1].upper() + words[1:]

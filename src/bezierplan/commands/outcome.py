@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis.outcome import outcome
+from bezierplan.analysis.outcome import outcome, verdict
 from bezierplan.commands import studies_of
 from bezierplan.study.page import settings_of
 
@@ -35,10 +35,11 @@ def main() -> None:
         shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
 
 
-def named(studies: dict[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
-    """The titles of studies, and the files of their sentences."""
+def named(studies: dict[str, Any]) -> tuple[dict[str, str], verdict.Files]:
+    """The titles of studies, and their sentences."""
     titles = {key: study.title for key, study in studies.items()}
-    return titles, {key: file for key in studies if (file := studies[key].verdict_file())}
+    files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
+    return titles, {key: file for key, file in files.items() if file[0]}
 
 
 def scored(studies: dict[str, Any]) -> list[str]:

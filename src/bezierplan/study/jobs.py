@@ -451,4 +451,4 @@ def summary(studies: Studies, scale: str) -> Summary:
 
 def verdict(study: Study, scale: str) -> Verdict:
     """That of a study."""
-    return Verdict(study.key, sources=[study.verdict_file()])
+    return Verdict(study.key, study.labels, sources=[study.verdict_file()])

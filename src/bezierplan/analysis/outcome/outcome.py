@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import words
+from bezierplan.analysis import naming, words
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import benchmark
-from bezierplan.analysis.outcome import headline, summary
+from bezierplan.analysis.outcome import headline, summary, verdict
 from bezierplan.running.inputs import PAPER
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
@@ -38,7 +38,7 @@ LAID = (
 
 def write(
     titles: Mapping[str, str],
-    verdicts: Mapping[str, str],
+    verdicts: verdict.Files,
     settings: pd.DataFrame,
     experiments: Iterable[str],
     tables: Mapping[str, Mapping[str, tuple[str, int]]],
@@ -46,7 +46,7 @@ def write(
     """Write the tables of docs/outcome, a page for each paper, and the README's part. Raises
     FileNotFoundError if results are missing.
 
-    titles: of studies, by name. verdicts: the files of their sentences. settings: of their methods.
+    titles: of studies, by name. verdicts: their sentences. settings: of their methods.
     experiments: those on whose problems others can be scored, each `study/name`. tables: of each
     study those with printed numbers, name -> title, and how many columns name the rows.
     """
@@ -102,7 +102,7 @@ def paper(
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         laid = _beside(ours, numbers.dropna(subset="table_row"), heads)
-        parts += [f"## {name.capitalize()}: {table_title}", table_text(laid)]
+        parts += [f"## {naming.heading(name)}: {table_title}", table_text(laid)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -118,14 +118,14 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
 
-def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
+def following(folder: Path, verdicts: verdict.Files, *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
     evidence = sorted(map(str, [*folder.glob(f"*_{READINGS[0]}"), *folder.glob(WORTH)]))
     return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, evidence)
 
 
-def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:
+def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> str:
     """The README's headline and sentences, from a folder's tables, and the scale, from its
     summary.
     """

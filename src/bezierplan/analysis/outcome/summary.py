@@ -42,22 +42,29 @@ def verdicts(
     claims: pd.DataFrame,
     measures: pd.DataFrame,
     whole: pd.DataFrame,
-    files: dict[str, str],
+    files: verdict.Files,
     audit_files: list[str],
     evidence: list[str],
 ) -> dict[str, str]:
-    """By study, what follows. files: that of its sentences. measures: rows with the columns
+    """By study, what follows. measures: rows with the columns
     `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`. evidence: files of readings, and of
     methods beside a generic optimiser, as far as there are any.
     """
-    if not files:
-        return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
-    tables = {"numbers": numbers, "claims": claims, "baseline": measures, "audit": audits}
+    tables = {
+        "numbers": numbers,
+        "claims": claims,
+        "baseline": measures,
+        "wholes": whole,
+        "audit": audits,
+    }
     for name in ("readings", "worth"):
         if own := [file for file in evidence if Path(file).stem.endswith(name)]:
             tables[name] = pd.concat(map(pd.read_csv, own), ignore_index=True)
-    return verdict.of_studies(files, tables | {"wholes": whole})
+    return {
+        study: verdict.markdown(verdict.read(file), verdict.own_rows(tables, study), labels)
+        for study, (file, labels) in files.items()
+    }
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:

@@ -4,6 +4,7 @@ Its sentences have values in braces, each taken from a table of results, and con
 which they do not follow: a sentence whose conditions fail is left out.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -25,6 +26,8 @@ TAKES = {
     "count": len,
     "only": pd.Series.item,
 }
+Files = Mapping[str, tuple[str, Mapping[str, str]]]
+"""By study, the file of its sentences, and its labels."""
 Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "readings", "worth"]
 
 
@@ -129,24 +132,16 @@ def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
     return Follows(sentence.text.format(**values), None)
 
 
-def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> str:
-    """The sentences that follow, and the table."""
+def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> str:
+    """The sentences that follow, and the table with labels in place of names."""
     follow = [each.text for each in sentences(verdict, tables) if each.fails is None]
     headings = {column: heading for heading, column in verdict.table.columns.items()}
     rows = _rows(tables[verdict.table.of], verdict.table.where, *headings)
-    shown = rows[list(headings)].rename(columns=headings)
+    shown = rows[list(headings)].replace(dict(labels)).rename(columns=headings)
     for heading in shown.select_dtypes("number"):
-        shown[heading] = [f"{value:.5g}" for value in shown[heading]]
-    shown = shown.fillna("").replace("nan", "")
+        shown[heading] = shown[heading].map("{:.5g}".format, na_action="ignore")
     first, *_ = shown
-    return " ".join(follow) + "\n\n" + table_text(shown.set_index(first)) + "\n"
-
-
-def of_studies(files: dict[str, str], tables: dict[str, pd.DataFrame]) -> dict[str, str]:
-    """By study, what follows as markdown. files: by study, that of its sentences. tables: those of
-    all studies, by `Source`, of which rows that are not primary do not count.
-    """
-    return {study: markdown(read(file), own_rows(tables, study)) for study, file in files.items()}
+    return " ".join(follow) + "\n\n" + table_text(shown.fillna("").set_index(first)) + "\n"
 
 
 def own_rows(tables: dict[str, pd.DataFrame], study: str) -> dict[str, pd.DataFrame]:

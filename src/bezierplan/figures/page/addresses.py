@@ -45,11 +45,3 @@ def of_cells(
         name if count[name] == 1 else f"{table}/{address(*cell.values())}"
         for name, cell in zip(short, cells, strict=True)
     ]
-
-
-def heading(name: str) -> str:
-    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure
-    gallery.
-    """
-    words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))
-    return words[:1].upper() + words[1:]

@@ -14,7 +14,7 @@ from typing import Any
 
 import bezierplan
 from bezierplan import places
-from bezierplan.analysis import words
+from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
 from bezierplan.analysis.numbers import baseline_comparison, wholes
 from bezierplan.analysis.outcome import headline
@@ -155,7 +155,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     environment.filters |= {
         "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
         "short": short,
-        "heading": addresses.heading,
+        "heading": naming.heading,
         "counts": counts,
         "packed": packed,
         "failing": answer.failing,
