@@ -28,7 +28,6 @@ TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
-SCALE = "a verdict is about a method, not about the few runs that a paper could afford."
 LAID = (
     "In each cell below the printed number stands before ours, of many runs: + agrees, x "
     "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
@@ -89,13 +88,14 @@ def paper(
 
     text: as from `following`. folder: of the study's results. tables: as for `write`.
     """
-    shown = ["id", "statement", "verdict", "where_it_holds"]
-    main = claims.loc[claims["primary"] & claims["main"].astype(bool), shown].fillna("")
+    heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
+    heads |= {"where_it_holds": "where it holds"}
+    main = claims.loc[claims["primary"] & claims["main"].astype(bool), [*heads]].fillna("")
     parts = [
         f"# {title}",
         f"**{headline.word(claims).capitalize()}.** {text.strip()}",
         "## What abstract and conclusion claim",
-        table_text(main.set_index("id")),
+        table_text(main.rename(columns=heads).set_index("claim")),
         f"The other claims stand in [claims.csv](claims.csv). {LAID}",
     ]
     for name, (table_title, heads) in tables.items():
@@ -136,7 +136,8 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
     )
     pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
     overview = headline.markdown(headline.headline(*tables, titles), pages)
-    return f"{overview}\n\n{follow}\n\nScale `{RESULTS.name}`: {SCALE}"
+    most = int(tables[0]["n_ours"].max())
+    return f"{overview}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
 
 
 def first_sentence(text: str) -> str:

@@ -4,10 +4,12 @@ Its sentences have values in braces, each taken from a table of results, and con
 which they do not follow: a sentence whose conditions fail is left out.
 """
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
+import numpy as np
 import pandas as pd
 from pydantic import Field, model_validator
 
@@ -129,7 +131,9 @@ def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
             sides[1] = float(sides[1])
         if not RELATIONS[relation](*sides):
             return Follows(sentence.text, f"{condition}: {sides[0]} and {sides[1]}")
-    return Follows(sentence.text.format(**values), None)
+    text = sentence.text.format(**values)
+    # The format of Python has no blank before the sign.
+    return Follows(re.sub(r"(?<=[0-9])%", " %", text), None)
 
 
 def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> str:
@@ -139,7 +143,12 @@ def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame], labels: Mapping[
     rows = _rows(tables[verdict.table.of], verdict.table.where, *headings)
     shown = rows[list(headings)].replace(dict(labels)).rename(columns=headings)
     for heading in shown.select_dtypes("number"):
-        shown[heading] = shown[heading].map("{:.5g}".format, na_action="ignore")
+        values = shown[heading]
+        # A printed number is looked up in the paper; of the others four digits of the largest.
+        as_printed = heading == headings.get("value_published") or (values.dropna() % 1 == 0).all()
+        decimals = max(0, 3 - int(np.log10(values.abs().max())))
+        form = "{:.10g}" if as_printed else f"{{:.{decimals}f}}"
+        shown[heading] = values.map(form.format, na_action="ignore")
     first, *_ = shown
     return " ".join(follow) + "\n\n" + table_text(shown.fillna("").set_index(first)) + "\n"
 

@@ -116,7 +116,7 @@ def against_outcome(folder: Path, tables: list[tuple[str, str]]) -> tuple[list[s
     if len(worst):
         shown = worst.head(SHOWN).drop(columns="equal").dropna(axis=1, how="all")
         lines.append(shown.to_string(index=False))
-    rate = f"with a probability of at most {ERROR_RATE:.0%}"
+    rate = f"with a probability of at most {100 * ERROR_RATE:g} %"
     if len(tested) and worst.empty:
         return [*lines, f"sound: a sound installation fails {rate}"], True
     return [*lines, f"not sound: chance alone does this {rate}"], False
