@@ -29,9 +29,9 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A policy, for experiments in dynamic environments", experiments.Policy),
         ("A workspace has `kind`, and by kind", workspace_kinds.kinds()),
         ("A change of `changing_cells`", changing_cells.Change),
-        ("A problem", experiments.Problem),
+        ("A problem", experiments.ProblemEntry),
         ("An experiment", experiments.Experiment),
-        ("`baseline_comparison`", experiments.BaselineComparison),
+        ("`baseline_comparison`", experiments.BaselineEntry),
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),
@@ -49,7 +49,10 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A claim", Claim),
         ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
     ],
-    "assumptions": [("The file", claims.AssumptionsFile), ("An assumption", claims.Assumption)],
+    "assumptions": [
+        ("The file", claims.AssumptionsFile),
+        ("An assumption", claims.AssumptionEntry),
+    ],
 }
 """File -> its tables: what stands above, and the model of a mapping or those of its kinds."""
 

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.kinds import kinds
 
 
-def check_of(values: dict[str, Any]) -> Check:
+def check_of(values: dict[str, Any]) -> ClaimCheck:
     """The check."""
     return kinds()[values["test"]].model_validate(values)

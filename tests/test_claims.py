@@ -6,7 +6,6 @@ import itertools
 import json
 import math
 from pathlib import Path
-from types import SimpleNamespace
 
 import checks_of_claims
 import numpy as np
@@ -20,7 +19,7 @@ from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
-from bezierplan.analysis.claims.material import Display
+from bezierplan.analysis.claims.material import Display, Material, StudyForClaims
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.claims.sentences import Entry
 from bezierplan.analysis.metrics import Metric
@@ -93,16 +92,9 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
         name: [Display.model_validate(part) for part in parts]
         for name, parts in given["artefacts"].items()
     }
-    job = SimpleNamespace(
-        study="study",
-        claims=claims,
-        artefacts=artefacts,
-        variant_of=given["variant_of"],
-        paired=given["paired"],
-        paper_repeats=given["repeats"],
-        labels=given["labels"],
-    )
-    return judging.judge(job, results, given["published"], given["functions"])
+    of_study = {key: given[key] for key in ("variant_of", "paired", "repeats", "labels")}
+    study = StudyForClaims("study", claims, artefacts, **of_study)
+    return judging.judge(Material(study, results, given["published"], given["functions"]))
 
 
 def compared(checks: pd.DataFrame) -> list[str]:

@@ -9,7 +9,6 @@ their own.
 import itertools
 from collections import defaultdict
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -58,8 +57,12 @@ def published(key):
 
 
 @cache
+def for_claims(key):
+    return jobs.claims(study(key), "full").study
+
+
 def artefacts(key):
-    return jobs.claims(study(key), "full").artefacts
+    return for_claims(key).artefacts
 
 
 @cache
@@ -71,7 +74,7 @@ def deciding(key, claim) -> list[dict]:
     """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work
     that counts.
     """
-    material = Material({}, published(key), artefacts(key), {}, {}, {}, {}, {})
+    material = Material(for_claims(key)._replace(variant_of={}), {}, published(key), {})
     sentence = Claim.model_validate(claim)
     first, *_ = variants.variants(sentence)
     checks = [comparisons.with_rest(check, sentence, material) for check in sentence.checks]
@@ -306,16 +309,10 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
     functions = study_code.functions(own.code_for("functions"))
-    job = SimpleNamespace(
-        study=key,
-        claims=[Claim.model_validate(claim).in_primary_variant()],
-        artefacts=artefacts(key),
-        variant_of=own.variants(),
-        paired={name: own.experiments[name].paired for name in results},
-        paper_repeats=dict.fromkeys(results, 10),
-        labels={},
-    )
-    return judge.judge(job, results, printed or published(key), functions)
+    own_claims = [Claim.model_validate(claim).in_primary_variant()]
+    repeats = dict.fromkeys(results, 10)
+    of_study = for_claims(key)._replace(claims=own_claims, repeats=repeats, labels={})
+    return judge.judge(Material(of_study, results, printed or published(key), functions))
 
 
 @pytest.fixture

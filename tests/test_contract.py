@@ -162,7 +162,7 @@ def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
     assert all(finding.passed for finding in findings)
     kinds = {finding.problem.split(":")[0] for finding in findings}
     assert kinds == {*interface.KINDS.values(), "all problems"}
-    assert contract.Finding("grid: open", "budget", True, "20 evaluations") in findings
+    assert contract.ContractFinding("grid: open", "budget", True, "20 evaluations") in findings
 
 
 @pytest.mark.parametrize("case", FAULTS_OF_RUNS)

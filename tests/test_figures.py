@@ -82,13 +82,13 @@ def other_workspaces() -> dict[str, Workspace]:
     return {"circles": circles, "polygons": Polygons((0.0, 10.0, 0.0, 5.0), ((square, hole),), "m")}
 
 
-def scene(found: Results) -> sheet.Scene:
+def scene(found: Results) -> sheet.FigureScene:
     workspaces = {
         "map": grid(),
         "narrow": from_lines(["..."] * 4, 10.0, "unit"),
         **other_workspaces(),
     }
-    return sheet.Scene(
+    return sheet.FigureScene(
         {"routes": found.problems}, workspaces, {"smooth": "smooth (quadratic pieces)"}, "unit"
     )
 
@@ -342,7 +342,7 @@ def test_a_problem_is_drawn_without_a_run():
         ["start", 5.0, 5.0],
         ["target", 35.0, 35.0],
     ]
-    own = sheet.Scene({}, {}, {}, "unit", places={"0_15": place})
+    own = sheet.FigureScene({}, {}, {}, "unit", places={"0_15": place})
     text = words(sheet.draw([panel], frame, own, 1))
     assert text.startswith("S | T | ")
     assert "occupied cell" in text
@@ -580,7 +580,7 @@ def test_workspace_numbers(numbers, printed):
 def test_all_256_numbers_can_be_read_in_one_column():
     home = from_lines(["." * 16] * 16, 10.0, "unit")
     panel = options_of(workspace, workspace="map", numbers="all")
-    own = sheet.Scene({}, {"map": home}, {}, "unit")
+    own = sheet.FigureScene({}, {"map": home}, {}, "unit")
     figure = sheet.draw([panel], workspace.data(home, panel).assign(panel=0), own, 1, "one")
     numbers = [text for text in figure.axes[0].texts if text.get_text()]
     assert sorted(int(text.get_text()) for text in numbers) == list(range(256))
@@ -637,7 +637,7 @@ def test_functions_get_the_published_tables_that_they_ask_for():
 # What is drawn, number by number: small tables, every column unlike the others
 
 GRID = from_lines(["..", ".."], 1.0, "m")
-SCENE = sheet.Scene(
+SCENE = sheet.FigureScene(
     {"first": {"across": Problem("across", GRID, (0.5, 0.5), (1.5, 1.5))}}, {}, {}, "m"
 )
 COUNTS = {"runs": 10, "feasible_runs": 10, "n": 10}

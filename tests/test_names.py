@@ -7,6 +7,7 @@ be an adjective.
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -120,6 +121,17 @@ def test_words_that_could_hold_anything_live_in_short_scopes():
 
 def test_what_is_declared_has_a_noun_for_a_name():
     assert faults(participles) == {}
+
+
+def test_a_class_name_stands_for_one_thing():
+    """But for what each file of an interface has, which is found by the file's name, and for the
+    scenes of two searches of geometry, an edit of which repeats all runs.
+    """
+    shared = {"Options", "Settings", "Scene"}
+    trees = [ast.parse(file.read_text(encoding="utf-8")) for file in SOURCE.rglob("*.py")]
+    every = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    borne = Counter(node.name for node in every if not node.name.startswith("_"))
+    assert {name for name, count in borne.items() if count > 1} <= shared
 
 
 def test_a_long_scope_and_a_participle_are_noticed():

@@ -598,7 +598,7 @@ def test_table_without_published_numbers():
     assert table["value_ours"].notna().all()
 
 
-def described(given: dict) -> table_kinds.Table:
+def described(given: dict) -> table_kinds.TableEntry:
     return table_kinds.table_of({"title": "any"} | given)
 
 

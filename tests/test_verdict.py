@@ -77,7 +77,7 @@ def test_a_value_that_is_no_number_takes_the_sentence_away():
         "values": {"mean": {"of": "numbers", "column": "value_ours", "take": "mean"}},
     }
     shown = {"of": "numbers", "columns": {"ours": "value_ours"}}
-    template = verdict.Verdict.model_validate({"sentences": [sentence], "table": shown})
+    template = verdict.VerdictFile.model_validate({"sentences": [sentence], "table": shown})
     rows = {"numbers": pd.DataFrame({"value_ours": [np.nan]})}
     (only,) = verdict.sentences(template, rows)
     assert only.fails == "a value is missing: mean"

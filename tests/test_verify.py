@@ -409,7 +409,7 @@ def tasks(tmp_path_factory):
     for name, (chunk, table) in runs.items():
         file = str(folder / f"{name}.runs.parquet")
         rows.write(table, file)
-        made[name] = recheck.Task(files[name], {file: chunk}, {})
+        made[name] = recheck.StoredRuns(files[name], {file: chunk}, {})
     return made
 
 

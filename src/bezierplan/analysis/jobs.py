@@ -10,15 +10,14 @@ import hashlib
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.material import Display
-from bezierplan.analysis.readings.assumptions import Assumption, Experiment, Reading
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.claims.material import Material, StudyForClaims
+from bezierplan.analysis.readings.assumptions import Alternatives, Reading, ReadingRuns
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
@@ -135,7 +134,7 @@ class Runs(Job):
 
 
 @dataclass(frozen=True)
-class Judgement(Job):
+class Recheck(Job):
     """The runs of a method in an experiment, judged again from their rows, in a process that no
     planner was in, before anything reads them.
     """
@@ -147,7 +146,7 @@ class Judgement(Job):
         from bezierplan.running import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
-        verdict = recheck.judged(recheck.Task(input_files.problems[0], files, {}))
+        verdict = recheck.judged(recheck.StoredRuns(input_files.problems[0], files, {}))
         recheck.write(recheck.sound(verdict), output_files[0])
 
 
@@ -208,7 +207,7 @@ class TableOfRuns(Job):
 class TableWithoutRuns(Job):
     """What a paper prints, or what follows from it."""
 
-    spec: Table
+    spec: TableEntry
     """Without its title."""
 
     def run(self, input_files, output_files, threads):
@@ -225,23 +224,13 @@ class TableWithoutRuns(Job):
 class Claims(Job):
     """The claims of a study, judged on the runs of some experiments."""
 
-    study: str
-    claims: list[Claim]
-    artefacts: dict[str, list[Display]]
-    """What each table and figure shows of runs."""
-    variant_of: dict[str, str]
-    """Method -> the method whose published numbers count."""
-    paired: dict[str, bool]
-    """By experiment, whether runs with equal repeat numbers share a start or a random workspace."""
-    paper_repeats: dict[str, int]
-    """By experiment, repeats of the paper, used if the printed numbers do not state them."""
-    labels: dict[str, str]
+    study: StudyForClaims
     repeats: dict[str, int]
     """By experiment, the repeats that are judged."""
 
     def modules(self):
         """Kinds of check as well."""
-        kinds = {check.test for claim in self.claims for check in claim.checks}
+        kinds = {check.test for claim in self.study.claims for check in claim.checks}
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
     def run(self, input_files, output_files, threads):
@@ -252,14 +241,15 @@ class Claims(Job):
         from bezierplan.analysis.claims import by_reading, judge, sentences
         from bezierplan.running import inputs
 
-        judged, checks = judge.judge(
-            self,
+        material = Material(
+            self.study,
             results.read_all(inputs.experiments(self.shows, input_files), self.repeats),
             results.published_tables(input_files.sources),
             study_code.functions(self.code),
         )
+        judged, checks = judge.judge(material)
         read = [pd.read_csv(file) for file in input_files.readings] or [pd.DataFrame()] * 2
-        names = sentences.variants_named(self.claims, self.labels)
+        names = sentences.variants_named(self.study.claims, self.study.labels)
         self.write(by_reading.told(judged, *read, names), output_files.claims)
         self.write(checks, output_files.checks)
 
@@ -272,9 +262,9 @@ class Readings(Job):
     tables: dict[str, Pivot]
     votes: dict[str, dict[str, dict]]
     """By table and metric, the printed numbers that vote: column -> value or list of values."""
-    assumptions: list[Assumption]
+    assumptions: list[Alternatives]
     pairs: list[Reading]
-    experiments: dict[str, Experiment]
+    experiments: dict[str, ReadingRuns]
     proposed: str | None
     folder: str
     claims: Claims
@@ -294,8 +284,8 @@ class Readings(Job):
 
         functions = study_code.functions(self.code)
         published = results.published_tables(input_files.sources)
-        covered = by_reading.covered(self.claims.claims, self.experiments)
-        job = replace(self.claims, claims=covered)
+        covered = by_reading.covered(self.claims.study.claims, self.experiments)
+        study = self.claims.study._replace(claims=covered)
         quantities = readings.quantities(
             self.tables, self.votes, inputs.by_table(input_files.sources)
         )
@@ -306,7 +296,9 @@ class Readings(Job):
             readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {}),
             self.pairs,
             self.proposed,
-            lambda found, among: by_reading.judged(job, found, published, functions, among),
+            lambda found, among: by_reading.judged(
+                Material(study, found, published, functions, among)
+            ),
         )
         for table, file in zip(made, output_files, strict=True):
             self.write(table, file)
@@ -339,7 +331,7 @@ class Audit(Job):
 
 
 @dataclass(frozen=True)
-class BaselineComparison(Job):
+class BaselineTable(Job):
     """The methods of all studies beside the baselines that the studies name."""
 
     baselines: dict[str, tuple[str, str | None]]
@@ -381,12 +373,12 @@ class Summary(Job):
             list(input_files.wholes),
             list(input_files.claims),
         )
-        for table in ("numbers", "claims", "wholes"):
-            self.write(getattr(summed, table), getattr(output_files, table))
+        for name, table in summed.items():
+            self.write(table, getattr(output_files, name))
 
 
 @dataclass(frozen=True)
-class Verdict(Job):
+class VerdictText(Job):
     """What follows for a paper."""
 
     study: str
@@ -419,7 +411,7 @@ class Verification(Job):
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
         verdict = recheck.merged(
-            recheck.Verdict(**each | {"digests": tuple(each["digests"])}) for each in judgements
+            recheck.RunsVerdict(**each | {"digests": tuple(each["digests"])}) for each in judgements
         )
         content = recheck.sound(verdict) | {
             "digest": verdict.digest,

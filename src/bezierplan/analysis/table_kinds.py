@@ -44,7 +44,7 @@ and which of its statistics.
 Columns = listed(Annotated[Name, Names("level")], least=0)
 
 
-class Table(Model):
+class TableEntry(Model):
     """Keys common to all kinds of table."""
 
     title: Line = Field(description="one line")
@@ -127,7 +127,7 @@ class Identify(Model):
     because: Line = Field(description="why the numbers may be such lengths, in words")
 
 
-class Pivot(Table):
+class Pivot(TableEntry):
     """A table of runs, compared with published numbers."""
 
     kind: Literal["pivot"] = Field(description="pivot")
@@ -223,7 +223,7 @@ class Pivot(Table):
         return [name for name in self.columns if name not in WORDS]
 
 
-class Transcript(Table):
+class Transcript(TableEntry):
     """A published file, unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
@@ -232,7 +232,7 @@ class Transcript(Table):
     )
 
 
-class FunctionTable(Table):
+class FunctionTable(TableEntry):
     """The result of a function in the study's module."""
 
     kind: Literal["function"] = Field(description="function")
@@ -244,11 +244,12 @@ class FunctionTable(Table):
 
 
 TABLES = {
-    model.model_fields["kind"].annotation.__args__[0]: model for model in Table.__subclasses__()
+    model.model_fields["kind"].annotation.__args__[0]: model
+    for model in TableEntry.__subclasses__()
 }
 """Kind -> its model."""
 
 
-def table_of(values: dict[str, Any]) -> Table:
+def table_of(values: dict[str, Any]) -> TableEntry:
     """The table of a job, from its plain values."""
     return TABLES[values["kind"]].model_validate(values)

@@ -61,5 +61,5 @@ def draw_drive(results: Results, picture: Path) -> None:
     panels = [panel_of(shown | {"at": moment}) for moment in MOMENTS]
     problems = {experiment: results.problems}
     frame = sheet.data(panels, Sources({experiment: results}))
-    figure = sheet.draw(panels, frame, sheet.Scene(problems, {}, {}, ""), columns=2)
+    figure = sheet.draw(panels, frame, sheet.FigureScene(problems, {}, {}, ""), columns=2)
     sheet.save(figure, str(picture))

@@ -46,7 +46,7 @@ class Latex(Job):
 
 
 @dataclass(frozen=True)
-class Figure(Job):
+class FigureFiles(Job):
     """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
 
     study: str
@@ -107,7 +107,7 @@ class Figure(Job):
         drawings = study_code.part_of(
             [name for name in self.code if study_code.part(name) == "panels"]
         )
-        scene = sheet.Scene(
+        scene = sheet.FigureScene(
             problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout, places
         )
         functions = study_code.functions(self.code)

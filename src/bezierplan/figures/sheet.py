@@ -32,7 +32,7 @@ _LETTER, _BESIDE = 0.057, 0.45
 _ROUNDS = 2
 
 
-class Scene(NamedTuple):
+class FigureScene(NamedTuple):
     """What drawings need in addition to the table of what is drawn.
 
     problems: by experiment, then by name. workspaces, places: workspaces and problems that are
@@ -75,7 +75,7 @@ def read_data(file: str) -> pd.DataFrame:
 
 
 def draw(
-    panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: str = "two"
+    panels: list[Panel], frame: pd.DataFrame, scene: FigureScene, columns: int, width: str = "two"
 ) -> Figure:
     """The figure of a table made by `data`. Its label is its caption: for each panel the run that
     it shows, and what it counts; in a second line, if anything can be said of it, what is plain to
@@ -127,7 +127,7 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def _heading(panel: Panel, frame: pd.DataFrame, scene: Scene, note: Note) -> str:
+def _heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
     """A panel's title with the method whose runs it shows, if there is only one and it is not that
     of all panels, and a few words below it.
     """

@@ -59,7 +59,7 @@ class Difference(NamedTuple):
         )
 
 
-class Task(NamedTuple):
+class StoredRuns(NamedTuple):
     """Files of runs of an experiment, each with the chunk that it is to hold, and with today's
     digest of the job that makes it, where that is to be judged.
     """
@@ -69,7 +69,7 @@ class Task(NamedTuple):
     jobs: dict[str, str]
 
 
-class Verdict(NamedTuple):
+class RunsVerdict(NamedTuple):
     """faults: in order of files. files, runs: how many files of runs, and rows in them. paths:
     different paths among these. digests: a line for each file.
     """
@@ -86,7 +86,7 @@ class Verdict(NamedTuple):
         return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
 
 
-def verify(tasks: list[Task], processes: int, say: Callable[[str], None]) -> Verdict:
+def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) -> RunsVerdict:
     """The verdict on tasks, in several processes. say: gets a line of progress now and then."""
     done = []
     for each in _mapped(judged, tasks, processes):
@@ -109,12 +109,12 @@ def _mapped(function: Callable[[Any], Any], items: list[Any], processes: int) ->
         yield from pool.map(function, items)
 
 
-def merged(verdicts: Iterable[Verdict]) -> Verdict:
+def merged(verdicts: Iterable[RunsVerdict]) -> RunsVerdict:
     """Several verdicts as one."""
-    return Verdict(*(sum(parts[1:], parts[0]) for parts in zip(Verdict(), *verdicts)))
+    return RunsVerdict(*(sum(parts[1:], parts[0]) for parts in zip(RunsVerdict(), *verdicts)))
 
 
-def sound(verdict: Verdict) -> dict[str, Any]:
+def sound(verdict: RunsVerdict) -> dict[str, Any]:
     """What a verdict says, as plain values by name. Raises ValueError with a fault."""
     if verdict.faults:
         raise ValueError(
@@ -146,7 +146,7 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
         raise rows.misplaced(file, "not a whole file of problems") from None
 
 
-def judged(task: Task) -> Verdict:
+def judged(task: StoredRuns) -> RunsVerdict:
     """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
     by_name, moving = _problems(task.problems)
     faults, lines, files = [], [], {}
@@ -174,7 +174,7 @@ def judged(task: Task) -> Verdict:
     for file, stored in files.items():
         for row in stored:
             faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
-    return Verdict(
+    return RunsVerdict(
         tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
     )
 
@@ -276,7 +276,7 @@ def _drive_judged(
 
 
 def made_again(
-    tasks: list[Task], processes: int, digest: str, every: bool
+    tasks: list[StoredRuns], processes: int, digest: str, every: bool
 ) -> tuple[int, list[Difference]]:
     """How many runs were made again, and what of them differs from their rows in any bit: the
     first of each file and one in `MADE_AGAIN`, which a digest chooses, or all.

@@ -7,11 +7,11 @@ from typing import Any
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.readings import assumptions as plain
 from bezierplan.schema.model import one_or_list
-from bezierplan.study.claims import Assumption
+from bezierplan.study.claims import AssumptionEntry
 from bezierplan.study.definition import Study
 
 
-def concerned(study: Study, assumption: Assumption) -> list[str]:
+def concerned(study: Study, assumption: AssumptionEntry) -> list[str]:
     """Methods whose setting an assumption governs, except baselines and variants; only those that
     it names, if any.
     """
@@ -23,7 +23,7 @@ def concerned(study: Study, assumption: Assumption) -> list[str]:
     return [method for method in of if assumption.setting in study.resolved(method)]
 
 
-def default_of(study: Study, assumption: Assumption) -> Any:
+def default_of(study: Study, assumption: AssumptionEntry) -> Any:
     """The value that runs use where an assumption leaves it to a setting: one for the methods
     without a value of their own, or each of those that it names.
     """
@@ -40,7 +40,7 @@ def default_of(study: Study, assumption: Assumption) -> Any:
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
-def with_alternative(study: Study, assumption: Assumption, value: Any) -> Study:
+def with_alternative(study: Study, assumption: AssumptionEntry, value: Any) -> Study:
     """The study under one alternative of a setting."""
     methods = dict(study.methods)
     for name in concerned(study, assumption):
@@ -58,7 +58,7 @@ def experiments_of_claims(claims: list[Claim]) -> list[str]:
     return list(dict.fromkeys(named))
 
 
-def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Assumption]:
+def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Alternatives]:
     """What the paper leaves open for some methods, for `analysis.readings`."""
     chosen = []
     for assumption in study.assumptions:
@@ -66,7 +66,7 @@ def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Assumption]:
         along = {name: assumption.along.get(name, {}) for name in concern if assumption.setting}
         if assumption.alternatives and (along or assumption.workspace):
             chosen.append(
-                plain.Assumption(
+                plain.Alternatives(
                     assumption.id,
                     assumption.detail,
                     assumption.alternatives,

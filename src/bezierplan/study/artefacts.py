@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from bezierplan.analysis.table_kinds import TABLES, Table
+from bezierplan.analysis.table_kinds import TABLES, TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
@@ -30,7 +30,7 @@ class ArtefactsFile(Model):
         + "; left out: as its planner does in all "
         "studies, or unlike most other methods",
     )
-    tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field(
+    tables: dict[Name, Annotated[TableEntry, one_of("kind", TABLES)]] = Field(
         {}, description="name → a table"
     )
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")

@@ -14,10 +14,10 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from bezierplan.analysis import metrics, statistics, study_code
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.outcome import verdict
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
 from bezierplan.places import relative
@@ -31,11 +31,10 @@ from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.schema.words import told
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
-from bezierplan.study.claims import Assumption
+from bezierplan.study.claims import AssumptionEntry
 from bezierplan.study.definition import Study
 from bezierplan.study.design import Design, design, together
-from bezierplan.study.experiments import Experiment, Method, descriptions
-from bezierplan.study.experiments import Problem as ProblemOfStudy
+from bezierplan.study.experiments import Experiment, Method, ProblemEntry, descriptions
 from bezierplan.study.jobs import job
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
@@ -213,7 +212,7 @@ class Checks:
         if not workspace.draws and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
-    def problem(self, name: str, problem: ProblemOfStudy) -> None:
+    def problem(self, name: str, problem: ProblemEntry) -> None:
         """It has the keys of its kind of workspace, and lies in free space."""
         self.names(problem)
         if self.complete:
@@ -304,7 +303,7 @@ class Checks:
         belong to its function.
         """
         experiments = one_or_list(getattr(model, "experiment", None) or [])
-        claim = isinstance(model, Check)
+        claim = isinstance(model, ClaimCheck)
         for path, what, name in named(model):
             key = ": ".join(path[:-1] if path[-1].isdecimal() else path)
             self.words.add(str(name))
@@ -365,7 +364,7 @@ class Checks:
 
     # artefacts.yaml
 
-    def table(self, name: str, table: Table) -> None:
+    def table(self, name: str, table: TableEntry) -> None:
         """Its names exist, and its file of published numbers fits it."""
         self.names(table)
         if isinstance(table, Pivot) and table.published:
@@ -433,7 +432,7 @@ class Checks:
                         {column: value}, "variants", claim=True
                     )
 
-    def assumption(self, identity: str, assumption: Assumption) -> None:
+    def assumption(self, identity: str, assumption: AssumptionEntry) -> None:
         """Its names are those of the study, and every alternative is a valid value of what it
         governs.
         """

@@ -36,7 +36,7 @@ class ClaimsFile(Model):
     claims: list[Claim] = Field(description="a list of claims", min_length=1)
 
 
-class Assumption(Model):
+class AssumptionEntry(Model):
     """What a paper leaves open, and the default here."""
 
     id: AssumptionId = Field(
@@ -83,7 +83,7 @@ class Assumption(Model):
     )
 
     @model_validator(mode="after")
-    def _check_setting(self) -> "Assumption":
+    def _check_setting(self) -> "AssumptionEntry":
         if self.setting is None and self.default is None:
             raise wrong("default: missing key; the value that runs use, unless it is a setting's")
         if self.setting is not None and self.default is not None:
@@ -106,7 +106,7 @@ class Assumption(Model):
 class AssumptionsFile(Model):
     """The file."""
 
-    assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)
+    assumptions: list[AssumptionEntry] = Field(description="a list of assumptions", min_length=1)
     reading_repeats: Count = Field(
         None,
         description="how many runs of each method under each condition judge a reading, a whole "

@@ -3,13 +3,13 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.layout import Layout
 from bezierplan.places import relative
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.artefacts import ArtefactsFile
-from bezierplan.study.claims import Assumption
+from bezierplan.study.claims import AssumptionEntry
 from bezierplan.study.experiments import Experiments
 from bezierplan.workspaces import files
 
@@ -22,7 +22,7 @@ class Study(Experiments, ArtefactsFile):
     """
 
     claims: Sequence[Claim] = ()
-    assumptions: Sequence[Assumption] = ()
+    assumptions: Sequence[AssumptionEntry] = ()
     votes: dict
     pairs: list
     reading_repeats: int | None
@@ -54,7 +54,7 @@ class Study(Experiments, ArtefactsFile):
         """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
-    def whole(self, table: str) -> Table:
+    def whole(self, table: str) -> TableEntry:
         """A table with what the one that it extends says of published numbers."""
         spec = self.tables[table]
         if not getattr(spec, "extends", None):

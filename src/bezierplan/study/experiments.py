@@ -72,7 +72,7 @@ class Method(Model):
     )
 
 
-class Problem(Model):
+class ProblemEntry(Model):
     """A workspace with a start and a target."""
 
     workspace: WorkspaceName = Field(description="the name of a workspace")
@@ -117,7 +117,7 @@ class Problem(Model):
     )
 
     @model_validator(mode="after")
-    def _check_ends(self) -> "Problem":
+    def _check_ends(self) -> "ProblemEntry":
         ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell"}
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}):
             given = " and ".join(sorted(ends)) or "neither"
@@ -196,7 +196,7 @@ class Experiment(Model):
         return self.seeds != "own"
 
 
-class BaselineComparison(Model):
+class BaselineEntry(Model):
     """The baseline with which the summary compares the study's methods."""
 
     baseline: Annotated[Name, Names("baseline")] = Field(description="a baseline")
@@ -265,13 +265,13 @@ class ExperimentsFile(Model):
     workspaces: dict[Name, Annotated[Workspace, one_of("kind", kinds())]] = Field(
         description="name → kind, unit, and the keys of the kind"
     )
-    problems: dict[ProblemName, Problem] = Field(
+    problems: dict[ProblemName, ProblemEntry] = Field(
         description="name → workspace, start and target", min_length=1
     )
     experiments: dict[Name, Experiment] = Field(
         description="name → problems × varied settings × methods × repeats", min_length=1
     )
-    baseline_comparison: BaselineComparison = Field(
+    baseline_comparison: BaselineEntry = Field(
         None,
         description="the baseline with which the summary compares the study's methods: a row of "
         "`baseline_comparison.csv` for each method",

@@ -5,26 +5,26 @@ for each rule makes its job from a study, or all, and the rule's wildcards.
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.analysis.claims.material import Display
+from bezierplan.analysis.claims.material import Display, StudyForClaims
 from bezierplan.analysis.jobs import (
     Audit,
-    BaselineComparison,
+    BaselineTable,
     Bounds,
     Claims,
-    Judgement,
     Problems,
     Readings,
+    Recheck,
     Runs,
     Summary,
     TableOfRuns,
     TableWithoutRuns,
-    Verdict,
+    VerdictText,
 )
 from bezierplan.analysis.readings import assumptions
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures import style
-from bezierplan.figures.figure import Figure as FigureOfStudy
-from bezierplan.figures.jobs import Figure, Latex
+from bezierplan.figures.figure import Figure
+from bezierplan.figures.jobs import FigureFiles, Latex
 from bezierplan.places import relative
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
@@ -123,10 +123,10 @@ def runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> 
     return Runs(job(study, experiment, method, scale, int(chunk)))
 
 
-def judgement(study: Study, scale: str, experiment: str, method: str) -> Judgement:
+def judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck:
     """All chunks of the scale."""
     numbers = chunks(study, experiment, method, scale)
-    return Judgement(
+    return Recheck(
         [job(study, experiment, method, scale, number) for number in numbers],
         shows={experiment: {method: len(numbers)}},
     )
@@ -237,7 +237,7 @@ def latex(study: Study, scale: str, table: str) -> Latex:
     return Latex(f"{study.key}-{table}", caption(study, table, scale), spec.note, heads)
 
 
-def figure(study: Study, scale: str, figure: str) -> Figure:
+def figure(study: Study, scale: str, figure: str) -> FigureFiles:
     """The figure of a name."""
     spec, behind = study.figures[figure], methods_of_artefact(study, figure)
     methods = {method for name in behind for method in study.methods_of(name)}
@@ -245,7 +245,7 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
     every = study.every_problem() if spec.problems else {}
     problems = descriptions(study, {name: every[name] for name in spec.problems})
     homes += problems.workspaces
-    return Figure(
+    return FigureFiles(
         study=study.key,
         columns=spec.columns,
         width=spec.width,
@@ -318,17 +318,19 @@ def claims(study: Study, scale: str) -> Claims:
         name: study.experiments[name] for name in alternatives.experiments_of_claims(claims)
     }
     return Claims(
-        study.key,
-        claims,
-        {
-            name: parts
-            for name, artefact in (study.tables | study.figures).items()
-            if (parts := _shown(artefact))
-        },
-        study.variants(),
-        {name: experiment.paired for name, experiment in experiments.items()},
-        {name: experiment.repeats["full"] for name, experiment in experiments.items()},
-        study.labels,
+        StudyForClaims(
+            study.key,
+            claims,
+            {
+                name: parts
+                for name, artefact in (study.tables | study.figures).items()
+                if (parts := _shown(artefact))
+            },
+            study.variants(),
+            {name: experiment.paired for name, experiment in experiments.items()},
+            {name: experiment.repeats["full"] for name, experiment in experiments.items()},
+            study.labels,
+        ),
         {name: experiment.repeats[scale] for name, experiment in experiments.items()},
         sources=study.published_files(),
         code=study.code_for("metrics", "functions"),
@@ -339,12 +341,12 @@ def claims(study: Study, scale: str) -> Claims:
     )
 
 
-def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
+def _shown(artefact: TableEntry | Figure) -> list[Display]:
     """What a table or figure shows of runs."""
     if isinstance(artefact, Pivot):
         entry = {name: each for name, each in artefact.plain().items() if name in keys(Display)}
         return [Display.model_validate(entry)]
-    panels = artefact.panels if isinstance(artefact, FigureOfStudy) else []
+    panels = artefact.panels if isinstance(artefact, Figure) else []
     return [
         Display(experiment=panel.experiment, where=panel.where)
         for panel in panels
@@ -405,7 +407,7 @@ def audit(study: Study, scale: str) -> Audit:
 # All studies together
 
 
-def baseline_comparison(studies: Studies, scale: str) -> BaselineComparison:
+def baseline_comparison(studies: Studies, scale: str) -> BaselineTable:
     """The studies that name a baseline."""
     experiments = {
         key: comparison.experiments
@@ -415,7 +417,7 @@ def baseline_comparison(studies: Studies, scale: str) -> BaselineComparison:
     return _beside_baselines(studies, scale, experiments, with_baselines=False)
 
 
-def worth(studies: Studies, scale: str) -> BaselineComparison:
+def worth(studies: Studies, scale: str) -> BaselineTable:
     """The studies that have a generic optimiser beside their methods; with all baselines."""
     experiments = {
         key: [comparison.worth]
@@ -427,7 +429,7 @@ def worth(studies: Studies, scale: str) -> BaselineComparison:
 
 def _beside_baselines(
     studies: Studies, scale: str, experiments: dict[str, list[str]], *, with_baselines: bool
-) -> BaselineComparison:
+) -> BaselineTable:
     """Methods of experiments, by study, beside the baseline that the study names."""
     baselines, repeats, shows = {}, {}, {}
     for key, names in experiments.items():
@@ -439,7 +441,7 @@ def _beside_baselines(
                 methods = study.methods_of(name)
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
             shows[f"{key}/{name}"] = chunks_of(study, name, methods, scale)
-    return BaselineComparison(baselines, repeats, with_baselines, shows=shows)
+    return BaselineTable(baselines, repeats, with_baselines, shows=shows)
 
 
 def summary(studies: Studies, scale: str) -> Summary:
@@ -449,6 +451,6 @@ def summary(studies: Studies, scale: str) -> Summary:
     return Summary(tables, code=code)
 
 
-def verdict(study: Study, scale: str) -> Verdict:
+def verdict(study: Study, scale: str) -> VerdictText:
     """That of a study."""
-    return Verdict(study.key, study.labels, sources=[study.verdict_file()])
+    return VerdictText(study.key, study.labels, sources=[study.verdict_file()])

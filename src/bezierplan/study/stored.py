@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running.recheck import Task
+from bezierplan.running.recheck import StoredRuns
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import jobs
@@ -28,7 +28,7 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
     return {key: word for key, word in known.items() if key in found}
 
 
-def tasks(studies: Studies, folder: Path) -> list[Task]:
+def tasks(studies: Studies, folder: Path) -> list[StoredRuns]:
     """What is to be judged below a scale's folder. Raises Fault for a folder of no scale, and
     FileNotFoundError without runs.
     """
@@ -45,7 +45,7 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
                 for number in jobs.chunks(study, experiment, method, scale)
             }
             all_tasks.append(
-                Task(
+                StoredRuns(
                     str(folder / key / "problems" / f"{experiment}.parquet"),
                     {file: each.chunk for file, each in made.items()},
                     {file: each.digest for file, each in made.items()},

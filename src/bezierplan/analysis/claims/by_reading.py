@@ -12,13 +12,13 @@ The verdict on a claim is that under the default, from many runs. It `depends`
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import Any
 
 import pandas as pd
 
 from bezierplan.analysis.claims import judge
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.readings.readings import LEAST_P
 
@@ -48,11 +48,9 @@ def _timed(check: object) -> bool:
     return isinstance(check, OfRuns) and METRICS[check.metric].unit == "s"
 
 
-def judged(job: Any, *material: Any) -> pd.DataFrame:
-    """The verdicts on claims (id, verdict) for which there is data. Arguments as of
-    `judge.judge`.
-    """
-    claims, checks = judge.judge(job, *material)
+def judged(material: Material) -> pd.DataFrame:
+    """The verdicts on claims (id, verdict) for which there is data."""
+    claims, checks = judge.judge(material)
     missing = {*checks.loc[checks["n"] == 0, "id"]}
     tested = ~claims["id"].isin(missing) & (claims["verdict"] != "untestable")
     return claims.loc[tested, ["id", "verdict"]]

@@ -97,7 +97,7 @@ _NEUTRAL |= {"metric": "", "effect_unit": "", "scale": "absolute", "failures": "
 _NEUTRAL |= {"target": 0, "least": 0, "margin": math.nan, "experiment": [], "pool": []}
 
 
-class Check(Model):
+class ClaimCheck(Model):
     """A check of any kind. A key that only other kinds have is neutral.
 
     against: whether the kind compares one group with another. cells_key: the key that names the
@@ -162,7 +162,7 @@ def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
             raise wrong(f"{key}: {group}: is compared with itself; expected another group")
 
 
-class OfRuns(Check):
+class OfRuns(ClaimCheck):
     """Checks of runs."""
 
     experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)

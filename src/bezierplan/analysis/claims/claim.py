@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.kinds import kinds
 from bezierplan.schema.model import (
     Line,
@@ -72,7 +72,7 @@ class Claim(Model):
         "more, in a row of its own, with each of the others, if any, in its place",
         min_length=1,
     )
-    checks: list[Annotated[Check, one_of("test", kinds())]] = Field(
+    checks: list[Annotated[ClaimCheck, one_of("test", kinds())]] = Field(
         description="a list of checks, at least one of them primary",
         min_length=1,
         max_length=MOST_CHECKS,

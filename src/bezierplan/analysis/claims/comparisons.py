@@ -12,7 +12,7 @@ import pandas as pd
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import GROUP_KEYS, Check, OfRuns
+from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import kind_of
@@ -28,7 +28,7 @@ REST = "rest"
 _FACTORS = ["experiment", "condition", "method"]
 
 
-def is_timed(check: Check) -> bool:
+def is_timed(check: ClaimCheck) -> bool:
     """Whether a check is of seconds."""
     return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
 
@@ -39,14 +39,14 @@ def unit_of(metric: str, experiments: list[str], material: Material) -> str:
     return metrics.unit(metric, next(iter(problems.values())).workspace.unit)
 
 
-def with_rest(check: Check, claim: Claim, material: Material) -> Check:
+def with_rest(check: ClaimCheck, claim: Claim, material: Material) -> ClaimCheck:
     """The check with `rest` replaced by the groups of the claim's artefact that the check does not
     name, without variants of methods: a sentence of the paper is about its own.
     """
     named = check.groups_named
     if REST not in named:
         return check
-    left_out = {*named, *(material.variant_of if check.cells == "method" else ())}
+    left_out = {*named, *(material.study.variant_of if check.cells == "method" else ())}
     rest = [each for each in _groups_of_artefact(check, claim, material) if each not in left_out]
     return check.but(
         **{
@@ -73,7 +73,7 @@ def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[
     return [
         part
         for name in claim.artefacts
-        for part in material.artefacts.get(name, [])
+        for part in material.study.artefacts.get(name, [])
         if part.experiment in check.experiments
     ]
 
@@ -129,7 +129,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                 for part in conditions
             ]
             printed_rows[cell] = [
-                rows_of_cell(part, printed_tables, material.variant_of) for part in own
+                rows_of_cell(part, printed_tables, material.study.variant_of) for part in own
             ]
         for terms, cells in compared:
             strata = {
@@ -146,7 +146,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
-                    paper_units=number_of_runs or material.repeats.get(check.experiments[0]),
+                    paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=_is_boolean(check, material),
                     paired=paired,
                     note=_note(check, rows, column, cells),
@@ -283,7 +283,7 @@ def _is_boolean(check: OfRuns, material: Material) -> bool:
 def _shares_draws(check: OfRuns, material: Material) -> bool:
     """Whether units with the same number share a random workspace or a start."""
     return "replicate" in check.model_fields_set or all(
-        material.paired.get(name, False) for name in check.experiments
+        material.study.paired.get(name, False) for name in check.experiments
     )
 
 
@@ -318,8 +318,8 @@ def _published_tables(
     """
     own = claim.artefacts
     tables = []
-    for name in [*own, *(name for name in material.artefacts if name not in own)]:
-        for part in material.artefacts.get(name, []):
+    for name in [*own, *(name for name in material.study.artefacts if name not in own)]:
+        for part in material.study.artefacts.get(name, []):
             if part.published and part.experiment in check.experiments:
                 published = material.published[PurePath(part.published).stem]
                 tables.append((part.experiment, comparison.as_read(published, part.reads)))

@@ -41,48 +41,31 @@ claim_checks.csv, one row per comparison.
 
 import json
 import math
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
-from bezierplan.analysis.claims.check import Check, OfRuns
+from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Comparison, Finding, MarkedComparison, Terms
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, name_of, variants, with_work
-from bezierplan.analysis.results import Results
 
 
-def judge(
-    job: Any, results: dict[str, Results], published: dict, functions: dict, among: int = 1
-) -> tuple[pd.DataFrame, pd.DataFrame]:
+def judge(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
 
-    job: of the class `jobs.Claims`; all random draws are seeded by names. functions: by name, of
-    the study's file in `papers/`. among: of how many readings the results are those of one. The
-    others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that
-    mixes runs of several conditions or names an unknown function.
+    All random draws are seeded by names, and nothing depends on the order of the runs. Raises Fault
+    for a claim that mixes runs of several conditions or names an unknown function.
     """
-    material = Material(
-        results,
-        published,
-        job.artefacts,
-        functions,
-        job.variant_of,
-        job.paired,
-        job.paper_repeats,
-        job.labels,
-        among,
-    )
     claim_rows, check_rows = [], []
-    for claim in job.claims:
+    for claim in material.study.claims:
         first, *_ = assignments = variants(claim)
         for assignment in assignments:
-            row, details = _judge_variant(claim, first, assignment, job.study, material)
+            row, details = _judge_variant(claim, first, assignment, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
     claims = pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"})
@@ -94,19 +77,19 @@ def judge(
 
 
 def _judge_variant(
-    claim: Claim, first: dict, assignment: dict, study: str, material: Material
+    claim: Claim, first: dict, assignment: dict, material: Material
 ) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
     variant = name_of(assignment)
     holds = claim.holds
-    name = f"{study}/{claim.id}/{variant}"
+    name = f"{material.study.name}/{claim.id}/{variant}"
     # `rest` means the same as in the primary variant, so it is filled in before values are
     # substituted.
     checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
     checks = in_variant(checks, first, assignment)
     content = {
         **{key: getattr(claim, key) for key in ("id", "place", "statement")},
-        "study": study,
+        "study": material.study.name,
         "variant": variant,
         "artefact": ", ".join(claim.artefacts),
         "finding": bool(claim.finding),
@@ -168,7 +151,7 @@ def _judge_variant(
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
         "where_it_holds": ""
         if everywhere
-        else sentences.where_it_holds(judgements, material.labels),
+        else sentences.where_it_holds(judgements, material.study.labels),
         "published": _published(deciding),
         "low95": finding.low,
         "high95": finding.high,
@@ -180,7 +163,7 @@ def _judge_variant(
 
 
 def _findings(
-    number: int, check: Check, claim: Claim, name: str, material: Material
+    number: int, check: ClaimCheck, claim: Claim, name: str, material: Material
 ) -> list[MarkedComparison]:
     """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = check.primary, kind_of(check)
@@ -331,7 +314,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
     }
 
 
-def _unit(check: Check, material: Material) -> str:
+def _unit(check: ClaimCheck, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
     if check.effect_unit:
         return check.effect_unit

@@ -12,6 +12,7 @@ from bezierplan.schema.model import Experiment, Metric, Model, Name, Where
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bezierplan.analysis.claims.claim import Claim
     from bezierplan.analysis.results import Results
 
 
@@ -28,25 +29,36 @@ class Display(Model):
     reads: dict[Name, Metric] = Field({})
 
 
-class Material(NamedTuple):
-    """The data on which a study's claims are judged, everything by name.
+class StudyForClaims(NamedTuple):
+    """A study as far as its claims depend on it.
 
-    results: of each experiment that was run. published: files of published numbers, named without
-    `.csv`. artefacts: what each table and figure shows of runs. functions: of the study's file in
-    `papers/`. variant_of: method -> the method whose published numbers count.
-    paired: for each experiment, whether runs with equal repeat numbers share a start or a random
-    workspace. repeats: the paper's number of repeats of each, used if the printed numbers do not
-    state it. labels: name -> how it is printed. among: of how many readings this is one.
+    artefacts: what each table and figure shows of runs. variant_of: method -> the method whose
+    published numbers count. paired: by experiment, whether runs with equal repeat numbers share a
+    start or a random workspace. repeats: by experiment, those of the paper, used if the printed
+    numbers do not state them. labels: name -> how it is printed.
     """
 
-    results: dict[str, Results]
-    published: dict[str, pd.DataFrame]
+    name: str
+    claims: list[Claim]
     artefacts: dict[str, list[Display]]
-    functions: dict[str, Any]
     variant_of: dict[str, str]
     paired: dict[str, bool]
     repeats: dict[str, int]
     labels: dict[str, str]
+
+
+class Material(NamedTuple):
+    """The data on which a study's claims are judged, everything by name.
+
+    results: of each experiment that was run. published: files of published numbers, named without
+    `.csv`. functions: of the study's file in `papers/`. among: of how many readings the results are
+    those of one.
+    """
+
+    study: StudyForClaims
+    results: dict[str, Results]
+    published: dict[str, pd.DataFrame]
+    functions: dict[str, Any]
     among: int = 1
 
 

@@ -15,7 +15,7 @@ from bezierplan.analysis.metrics import METRICS
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 
 
-class Printed(NamedTuple):
+class PrintedCell(NamedTuple):
     """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value,
     number of runs).
     """
@@ -25,7 +25,7 @@ class Printed(NamedTuple):
 
 
 def printed(
-    check: OfRuns, rows_of_conditions: Sequence[Sequence[Printed | None]]
+    check: OfRuns, rows_of_conditions: Sequence[Sequence[PrintedCell | None]]
 ) -> tuple[np.ndarray, int | None]:
     """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if
     that is not printed.
@@ -97,7 +97,7 @@ def printed_table(experiment: str, table: pd.DataFrame, metric: str) -> PrintedT
 
 def rows_of_cell(
     cell: list[dict], tables: list[PrintedTable], variant_of: dict[str, str]
-) -> Printed | None:
+) -> PrintedCell | None:
     """The printed numbers of a cell; None if no table has it, or if the cell matches several rows.
 
     cell: the values that distinguish its runs, by column. tables: the first with the cell is used.
@@ -115,5 +115,5 @@ def rows_of_cell(
             for key, value in zip(table.keys, places.pop())
         )
         if place in table.cells:
-            return Printed(number, table.cells[place])
+            return PrintedCell(number, table.cells[place])
     return None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from bezierplan.analysis.claims import comparisons, variants
-from bezierplan.analysis.claims.check import Check, OfRuns, PublishedMargin
+from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
 from bezierplan.analysis.claims.kinds import share
@@ -53,7 +53,7 @@ class PrintedTerms(NamedTuple):
     place: str
 
 
-def named(row: Row, check: Check, labels: Mapping[str, str]) -> PrintedTerms:
+def named(row: Row, check: ClaimCheck, labels: Mapping[str, str]) -> PrintedTerms:
     """The groups and the place of a row, None where it is empty."""
     place = places(json.loads(row["place"] or "{}"), labels)
     if not check.against:
@@ -62,7 +62,7 @@ def named(row: Row, check: Check, labels: Mapping[str, str]) -> PrintedTerms:
     return PrintedTerms(*(column_name(group, labels) for group in groups), place)
 
 
-def title(row: Row, check: Check | None, labels: Mapping[str, str]) -> str:
+def title(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
     """The name of a comparison: what is compared, and where. check: None if it is no more."""
     terms = [row[name] for name in ("group", "relation", "other")]
     words = ["" if term is None else _plain(term) for term in terms]
@@ -98,7 +98,7 @@ def _plain(value: Any) -> str:
     return f"{value:g}" if is_number(value) else str(value).replace("_", " ")
 
 
-def why(row: Row, check: Check, labels: Mapping[str, str], own_criterion: bool) -> str:
+def why(row: Row, check: ClaimCheck, labels: Mapping[str, str], own_criterion: bool) -> str:
     """The sentence about a claim's decisive comparison.
 
     row: of claim_checks.csv, None where it is empty. labels: name -> how it is printed.
@@ -133,7 +133,7 @@ def rule(claim: Claim | None, verdict: str, count: str | None) -> str:
     return f"{count}; {needs}" if some and needs else count or ""
 
 
-def reference(check: Check) -> float:
+def reference(check: ClaimCheck) -> float:
     """The effect on whose other side a claim fails: the share that it needs, 0 for any other
     test.
     """
@@ -144,13 +144,13 @@ def reference(check: Check) -> float:
     )
 
 
-def _claimed(row: Row, check: Check) -> str:
+def _claimed(row: Row, check: ClaimCheck) -> str:
     """What a claim that compares groups says, in each of the comparisons taken together."""
     together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
     return f"the claim says {check.direction}{together}"
 
 
-def _between(row: Row, check: Check, names: PrintedTerms) -> str:
+def _between(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
     """Of groups that should be lower, or higher, than others."""
     # Of an event, the share of runs in which it happens.
     quantity = _quantity(row)
@@ -162,7 +162,7 @@ def _between(row: Row, check: Check, names: PrintedTerms) -> str:
     )
 
 
-def _apart(row: Row, check: Check) -> str:
+def _apart(row: Row, check: ClaimCheck) -> str:
     """How a group compares with another: `3 cell lower than`, `25,000 times`."""
     effect = row["effect"]
     if not effect:
@@ -243,7 +243,7 @@ def _function(row: Row, check: function.Options, names: PrintedTerms) -> str:
     return f"{check.effect}: {_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
 
 
-def _effect(row: Row, check: Check, names: PrintedTerms) -> str:
+def _effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
     """Of any other comparison; without an effect, how many runs of each group have a value."""
     if row["effect"] is not None:
         compared = " ".join(filter(None, [names.group, row["relation"], names.other]))
@@ -283,11 +283,11 @@ def _unit(row: Row) -> str:
     return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
 
 
-def _size(row: Row, check: Check) -> str:
+def _size(row: Row, check: ClaimCheck) -> str:
     return _amount(abs(row["effect"]), row, check)
 
 
-def _amount(value: float, row: Row, check: Check) -> str:
+def _amount(value: float, row: Row, check: ClaimCheck) -> str:
     """An effect with its unit; a relative one in per cent."""
     if check.relative:
         return f"{_printed(100 * value)} %"
@@ -299,7 +299,7 @@ def _printed(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.10g}"
 
 
-def _interval(row: Row, check: Check) -> str:
+def _interval(row: Row, check: ClaimCheck) -> str:
     ends, unit = [row["low95"], row["high95"]], ""
     if None in ends:
         return ""
@@ -310,7 +310,7 @@ def _interval(row: Row, check: Check) -> str:
     return f" (95 % interval {' to '.join(map(_printed, ends))}{unit})"
 
 
-def _margin(row: Row, check: Check) -> str:
+def _margin(row: Row, check: ClaimCheck) -> str:
     """The limit within which a difference does not count, and who chose it."""
     if row["margin"] is None:
         return ""
@@ -364,7 +364,7 @@ def _in_words(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> 
     return Entry(factors, entry.mark_family)
 
 
-def _what(check: Check) -> str:
+def _what(check: ClaimCheck) -> str:
     """What a check compares, in words."""
     statistic = check.statistic if "statistic" in check.model_fields_set else ""
     return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
@@ -387,7 +387,7 @@ def where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, st
     return f"one by one {words}" if words else ""
 
 
-def _group(check: Check, group: Any) -> Any:
+def _group(check: ClaimCheck, group: Any) -> Any:
     """A group's name; for a number, which a file may hold as text, with its column."""
     if isinstance(group, str) and check.cells != "method":
         with suppress(ValueError):

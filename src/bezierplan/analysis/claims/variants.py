@@ -3,7 +3,7 @@
 import itertools
 from typing import Any
 
-from bezierplan.analysis.claims.check import GROUP_KEYS, Check, Comparing, OfRuns
+from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, Comparing, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import one_or_list
 
@@ -25,8 +25,8 @@ def name_of(assignment: dict[str, Any]) -> str:
 
 
 def in_variant(
-    checks: list[Check], first: dict[str, Any], assignment: dict[str, Any]
-) -> list[Check]:
+    checks: list[ClaimCheck], first: dict[str, Any], assignment: dict[str, Any]
+) -> list[ClaimCheck]:
     """The checks with the values of an assignment instead of the first ones, wherever a check names
     those.
 
@@ -45,12 +45,12 @@ def in_variant(
     return checks
 
 
-def has_runs(check: Check) -> bool:
+def has_runs(check: ClaimCheck) -> bool:
     """Whether a check selects runs."""
     return "where" in type(check).model_fields
 
 
-def _exchanged(check: Check, column: str, pairs: dict) -> Check:
+def _exchanged(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck:
     keys = {"metric": ["metric"], "experiment": ["experiment"]}.get(column, [])
     keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
     written = check.model_fields_set.intersection(keys)
@@ -68,7 +68,7 @@ def _replaced(values: Any, pairs: dict) -> Any:
     )
 
 
-def with_work(check: Check) -> list[Check]:
+def with_work(check: ClaimCheck) -> list[ClaimCheck]:
     """A check of seconds that names counted work, split into a primary check of the work and a
     secondary one of the seconds.
     """

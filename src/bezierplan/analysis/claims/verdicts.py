@@ -31,7 +31,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.effects import ALPHA, SIDES, Finding
 
 # Least share of all comparisons that must be decided; if no decided one speaks against the claim,
@@ -55,7 +55,7 @@ def mark(finding: Finding, p: float) -> str:
     return "0" if finding.negligible else "?"
 
 
-def among(finding: Finding, check: Check, number: int) -> Finding:
+def among(finding: Finding, check: ClaimCheck, number: int) -> Finding:
     """A finding as one of a number of them, any of which may decide: p counts so many times
     (Bonferroni), and the interval is as much wider as that of a normal effect.
     """

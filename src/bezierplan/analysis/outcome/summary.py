@@ -3,7 +3,6 @@
 import itertools
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -14,27 +13,19 @@ from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.outcome import verdict
 
 
-class Summary(NamedTuple):
-    """The numbers and claims of all studies, and columns of numbers as wholes."""
-
-    numbers: pd.DataFrame
-    claims: pd.DataFrame
-    wholes: pd.DataFrame
-
-
 def gathered(
     comparison_files: Mapping[tuple[str, str], str],
     wholes_files: list[str],
     claims_files: list[str],
-) -> Summary:
-    """The summary of all studies. comparison_files: by study and table. wholes_files: of the
-    same tables.
+) -> dict[str, pd.DataFrame]:
+    """All studies together by name: `numbers`, `claims`, and `wholes`, columns of numbers.
+    comparison_files: by study and table. wholes_files: of the same tables.
     """
-    return Summary(
-        numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
-        read_claims(claims_files),
-        pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
-    )
+    return {
+        "numbers": numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
+        "claims": read_claims(claims_files),
+        "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
+    }
 
 
 def verdicts(

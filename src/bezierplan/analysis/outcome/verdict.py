@@ -77,7 +77,7 @@ class Sentence(Model):
         return self
 
 
-class Display(Model):
+class VerdictTable(Model):
     """The small table: rows of a table of results, and its columns by heading."""
 
     of: Source
@@ -85,11 +85,11 @@ class Display(Model):
     columns: dict[str, str]
 
 
-class Verdict(Model):
+class VerdictFile(Model):
     """What follows for a paper."""
 
     sentences: list[Sentence]
-    table: Display
+    table: VerdictTable
 
 
 class Follows(NamedTuple):
@@ -99,9 +99,9 @@ class Follows(NamedTuple):
     fails: str | None
 
 
-def read(file: str | Path) -> Verdict:
+def read(file: str | Path) -> VerdictFile:
     """The verdict of a study, from its file. Raises Fault."""
-    return parsed(Verdict, checked.read(Path(file)), str(file))
+    return parsed(VerdictFile, checked.read(Path(file)), str(file))
 
 
 def _rows(table: pd.DataFrame, where: dict[str, Any], *columns: str) -> pd.DataFrame:
@@ -110,7 +110,7 @@ def _rows(table: pd.DataFrame, where: dict[str, Any], *columns: str) -> pd.DataF
     return select(table, where)
 
 
-def sentences(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> list[Follows]:
+def sentences(verdict: VerdictFile, tables: dict[str, pd.DataFrame]) -> list[Follows]:
     """The sentences of a study with their values. tables: those of the study, by `Source`."""
     return [_sentence(each, tables) for each in verdict.sentences]
 
@@ -136,7 +136,9 @@ def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
     return Follows(re.sub(r"(?<=[0-9])%", " %", text), None)
 
 
-def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> str:
+def markdown(
+    verdict: VerdictFile, tables: dict[str, pd.DataFrame], labels: Mapping[str, str]
+) -> str:
     """The sentences that follow, and the table with labels in place of names."""
     follow = [each.text for each in sentences(verdict, tables) if each.fails is None]
     headings = {column: heading for heading, column in verdict.table.columns.items()}

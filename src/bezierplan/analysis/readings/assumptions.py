@@ -20,7 +20,7 @@ Reading = dict[str, Any]
 """Id of an assumption -> its value; {} for the default."""
 
 
-class Assumption(NamedTuple):
+class Alternatives(NamedTuple):
     """What a paper leaves open: the other values of a setting, or of a key of workspaces.
 
     along: by method whose setting it is, further settings that go with another value. problems:
@@ -38,7 +38,7 @@ class Assumption(NamedTuple):
     excluded_by: str
 
 
-class Experiment(NamedTuple):
+class ReadingRuns(NamedTuple):
     """The runs of a reading: chunks by method, and descriptions of the problems."""
 
     chunks: dict[str, Chunk]
@@ -51,7 +51,7 @@ def experiment(
     size: int,
     repeats: int | None,
     descriptions: Descriptions,
-) -> Experiment:
+) -> ReadingRuns:
     """The runs of an experiment by which readings are judged: of the methods and in the conditions
     that tables show.
 
@@ -80,4 +80,4 @@ def experiment(
         drawn = any("layout" in place for place in met.values())
         last = min(IN_EACH, size) if drawn else repeats
         own_chunks[method] = chunk._replace(vary=vary, problems=met, repeats=[0, last])
-    return Experiment(own_chunks, descriptions)
+    return ReadingRuns(own_chunks, descriptions)

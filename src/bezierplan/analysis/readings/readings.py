@@ -27,7 +27,7 @@ import pandas as pd
 from bezierplan.analysis import metrics
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.readings import fit
-from bezierplan.analysis.readings.assumptions import Assumption, Experiment, Reading
+from bezierplan.analysis.readings.assumptions import Alternatives, Reading, ReadingRuns
 from bezierplan.analysis.results import Results, joined, published_table, select
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
@@ -209,7 +209,7 @@ def _with_lost(results: Results) -> Results:
 # Runs of a reading
 
 
-def under(chunk: Chunk, reading: Reading, assumptions: list[Assumption]) -> Chunk:
+def under(chunk: Chunk, reading: Reading, assumptions: list[Alternatives]) -> Chunk:
     """A chunk of runs under a reading."""
     settings = dict(chunk.settings)
     places = {name: dict(place) for name, place in chunk.problems.items()}
@@ -247,8 +247,8 @@ class Runner(NamedTuple):
     shared_runs: by experiment and method, the runs of the default, which other readings share.
     """
 
-    assumptions: list[Assumption]
-    experiments: dict[str, Experiment]
+    assumptions: list[Alternatives]
+    experiments: dict[str, ReadingRuns]
     folder: Path
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
     shared_runs: dict[tuple[str, str], pd.DataFrame]
@@ -330,7 +330,7 @@ def read_problems(files: dict[str, Files]) -> dict[str, tuple[dict[str, Problem]
 # All readings
 
 
-def listed(assumptions: list[Assumption], pairs: list[Reading]) -> list[Reading]:
+def listed(assumptions: list[Alternatives], pairs: list[Reading]) -> list[Reading]:
     """The default, each other value of an assumption, and the pairs."""
     alone = [{each.id: value} for each in assumptions for value in each.alternatives]
     return [{}, *alone, *pairs]

@@ -5,7 +5,7 @@ plain values, and files.
 from typing import Any, NamedTuple
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Table
+from bezierplan.analysis.table_kinds import TableEntry
 
 
 class Citation(NamedTuple):
@@ -39,7 +39,7 @@ class TableView(NamedTuple):
 
     title: str
     behind: str
-    spec: Table
+    spec: TableEntry
     """With what the one that it extends says of published numbers."""
     says: str = ""
 

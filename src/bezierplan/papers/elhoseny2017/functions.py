@@ -18,8 +18,8 @@ from bezierplan.planners.parts.diversity import q_statistic
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
-    from bezierplan.analysis.claims.kinds.function import Options as Check
+    from bezierplan.analysis.claims.kinds.function import Experiments, FunctionResult, Published
+    from bezierplan.analysis.claims.kinds.function import Options as FunctionCheck
 
 
 def said(published: "Published") -> dict[str, float]:
@@ -73,7 +73,9 @@ def q_table(published: "Published") -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(check: "Check", results: "Experiments", published: "Published") -> "Judgement":
+def q_example(
+    check: "FunctionCheck", results: "Experiments", published: "Published"
+) -> "FunctionResult":
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
     difference from a printed value.
     """
@@ -90,8 +92,8 @@ def q_example(check: "Check", results: "Experiments", published: "Published") ->
 
 
 def fluctuation(
-    check: "Check", results: "Experiments", published: "Published", *, most: float
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published", *, most: float
+) -> "FunctionResult":
     """Claim C10: whether runs on one field differ, by a standard deviation of at most a share of
     their mean.
 
@@ -109,8 +111,8 @@ def fluctuation(
 
 
 def printed_over_bound(
-    check: "Check", results: "Experiments", published: "Published"
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published"
+) -> "FunctionResult":
     """Claim C23: whether no printed length of a competing method is larger than such fields
     explain.
 

@@ -10,13 +10,18 @@ from bezierplan.analysis.results import pick, select
 from bezierplan.papers.ma2020.metrics import obstacle_clearance
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
-    from bezierplan.analysis.claims.kinds.function import Options as Check
+    from bezierplan.analysis.claims.kinds.function import Experiments, FunctionResult, Published
+    from bezierplan.analysis.claims.kinds.function import Options as FunctionCheck
 
 
 def drawn_farther(
-    check: "Check", results: "Experiments", published: "Published", *, method: str, other: str
-) -> "Judgement":
+    check: "FunctionCheck",
+    results: "Experiments",
+    published: "Published",
+    *,
+    method: str,
+    other: str,
+) -> "FunctionResult":
     """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
     than that drawn of another, on every map.
 
@@ -37,8 +42,13 @@ def drawn_farther(
 
 
 def excess_of_corners(
-    check: "Check", results: "Experiments", published: "Published", *, beside: str, least: float
-) -> "Judgement":
+    check: "FunctionCheck",
+    results: "Experiments",
+    published: "Published",
+    *,
+    beside: str,
+    least: float,
+) -> "FunctionResult":
     """Claim C27: whether superfluous corners cause at least a share of the excess of each method's
     mean length over that of another.
 
@@ -53,7 +63,9 @@ def excess_of_corners(
     return "+" if share >= least else "-", share, None, len(runs)
 
 
-def printed_minima(check: "Check", results: "Experiments", published: "Published") -> "Judgement":
+def printed_minima(
+    check: "FunctionCheck", results: "Experiments", published: "Published"
+) -> "FunctionResult":
     """Claim C18: whether every shortest length in the text is that in Table 1 or 2. The effect is
     the largest difference, the units are the lengths.
     """

@@ -19,8 +19,8 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
-    from bezierplan.analysis.claims.kinds.function import Options as Check
+    from bezierplan.analysis.claims.kinds.function import Experiments, FunctionResult, Published
+    from bezierplan.analysis.claims.kinds.function import Options as FunctionCheck
 
 # The three control points (x, y), in units, of the best known single Bézier curves, by workspace:
 # the results of 300 long runs, improved by sequential quadratic programming. Their lengths are
@@ -69,8 +69,8 @@ def chaotic_sequences(
 
 
 def gauss_above(
-    check: "Check", results: "Experiments", published: "Published", *, limit: float
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published", *, limit: float
+) -> "FunctionResult":
     """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
     their first values.
 
@@ -89,7 +89,7 @@ def gauss_above(
 
 
 def sensitive_to_start(
-    check: "Check",
+    check: "FunctionCheck",
     results: "Experiments",
     published: "Published",
     *,
@@ -97,7 +97,7 @@ def sensitive_to_start(
     apart: float,
     iterations: int,
     singer_mu: float,
-) -> "Judgement":
+) -> "FunctionResult":
     """Claim C46: whether a map of the paper is sensitive to its first value.
 
     The effect is the map's Lyapunov exponent: the mean logarithm by which a difference grows in an
@@ -127,8 +127,8 @@ def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: floa
 
 
 def bowl_with_local_minima(
-    check: "Check", results: "Experiments", published: "Published"
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published"
+) -> "FunctionResult":
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
@@ -237,8 +237,8 @@ def valleys(values: np.ndarray) -> np.ndarray:
 
 
 def several_homotopy_classes(
-    check: "Check", results: "Experiments", published: "Published"
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published"
+) -> "FunctionResult":
     """Claim C17: the number of classes in which runs converge; two paths of one class pass every
     circle on the same side.
 
@@ -256,8 +256,8 @@ def several_homotopy_classes(
 
 
 def least_above(
-    check: "Check", results: "Experiments", published: "Published", *, limit: int
-) -> "Judgement":
+    check: "FunctionCheck", results: "Experiments", published: "Published", *, limit: int
+) -> "FunctionResult":
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
@@ -274,13 +274,13 @@ def least_above(
 
 
 def fewer_outliers(
-    check: "Check",
+    check: "FunctionCheck",
     results: "Experiments",
     published: "Published",
     *,
     runs_drawn: int,
     margin: float,
-) -> "Judgement":
+) -> "FunctionResult":
     """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
     often than for the other maps.
 

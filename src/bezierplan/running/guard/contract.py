@@ -51,7 +51,7 @@ _CELLS = {"far from the origin": 1_500.0}
 _HALF = 0.55
 
 
-class Finding(NamedTuple):
+class ContractFinding(NamedTuple):
     """The result of one test of the contract on one problem. detail: the fault if it failed,
     otherwise additional information.
     """
@@ -66,7 +66,7 @@ class Finding(NamedTuple):
         return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
-def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
+def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFinding]:
     """Findings on a planner, given as a name or the path of a file, with these settings; computed
     lazily. One in a file is run in another process as well, where `hash`, the order of sets and the
     addresses of objects differ.
@@ -120,14 +120,16 @@ def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
 # Facts
 
 
-def _findings(planner: str, module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
+def _findings(
+    planner: str, module: ModuleType, settings: dict[str, Any]
+) -> Iterator[ContractFinding]:
     by_name = {problem.name: problem for problem in problems(module)}
     hashing = 0 if is_file(planner) else None
     try:
         made = _made(planner, settings, by_name, SEEDS, hashing)
         again = _made(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
     except PlannerFailure as failure:
-        yield Finding("all problems", "plan", False, str(failure))
+        yield ContractFinding("all problems", "plan", False, str(failure))
         return
     plans_of = {name: [each.result for each in replies] for name, replies in made.items()}
     columns = next(iter(plans_of.values()))[0].extra.keys()
@@ -140,13 +142,13 @@ def _findings(planner: str, module: ModuleType, settings: dict[str, Any]) -> Ite
             ("claims", *_claims(plans, by_name[name], getattr(module, "exact", False))),
             ("random numbers", "", _repeats(plans, [each.result for each in again.get(name, ())])),
         ):
-            yield Finding(name, fact, not fault, fault or detail)
+            yield ContractFinding(name, fact, not fault, fault or detail)
     draws = any(each.drew for replies in made.values() for each in replies)
     fault = "" if draws else worker.UNDRAWN
     if getattr(module, "deterministic", False):
         differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
         fault = "other plans from other generators, but deterministic = True" if differ else ""
-    yield Finding("all problems", "random numbers", not fault, fault)
+    yield ContractFinding("all problems", "random numbers", not fault, fault)
 
 
 def _made(

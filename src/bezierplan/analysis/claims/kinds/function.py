@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from bezierplan.analysis.claims.check import EXPERIMENT, Check
+from bezierplan.analysis.claims.check import EXPERIMENT, ClaimCheck
 from bezierplan.analysis.claims.effects import Finding, Terms
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, closest
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
     Experiments = dict[str, Results]
     Published = dict[str, pd.DataFrame]
-    Judgement = tuple[str, float, tuple[float, float] | None, int]
+    FunctionResult = tuple[str, float, tuple[float, float] | None, int]
 
 
-class Options(Check):
+class Options(ClaimCheck):
     name: Function = Field(description="the name of a function of the study's `functions.py`")
     arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-class Pick(Model):
+class LowestRun(Model):
     """One feasible run of each condition and method."""
 
     lowest: Metric = Field(description="the name of a metric")
@@ -82,7 +82,7 @@ class Options(OfRuns):
         None, description="at_least or at_most, where the threshold is a number"
     )
     failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
-    pick: Pick = Field(
+    pick: LowestRun = Field(
         None, description="{lowest: metric}: one feasible run of each condition and method"
     )
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import Field
 
-from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.model import Line
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from bezierplan.analysis.claims.claim import Claim
 
 
-class Options(Check):
+class Options(ClaimCheck):
     reason: Line = Field(description="why nothing here can test it, one line")
 
 
