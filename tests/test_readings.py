@@ -210,12 +210,15 @@ def test_an_excluding_sentence_saves_the_runs_and_pairs_are_tried():
     class Runner:
         assumptions = made.assumptions
 
+        def moved(self, reading):
+            return []
+
         def chunks(self, reading):
             tried.append(readings.name_of(reading))
             return []
 
     with pytest.raises(ValueError, match="No objects to concatenate"):
-        readings.of_study("walks", [], Runner(), made.pairs, None, None)
+        readings.of_study("walks", [], Runner(), made.pairs, None, None, None)
     assert {"default", "O2=0.4, O3b=1.35"} < {*tried}
     assert not {"O7=mirror", "O8=dimension"} & {*tried}
 

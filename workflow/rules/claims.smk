@@ -62,6 +62,7 @@ rule readings_of_study:
     output:
         readings=f"{RESULTS}/readings.csv",
         claims=f"{RESULTS}/claims_by_reading.csv",
+        numbers=f"{RESULTS}/numbers_by_reading.csv",
     log:
         f"{RESULTS}/logs/readings.log",
     wildcard_constraints:

@@ -105,7 +105,7 @@ rule verified:
         shown=shown,
         summary=SUMMARY,
         readings=lambda wildcards: of_readings(
-            wildcards.scale, READ, "readings", "claims_by_reading"
+            wildcards.scale, READ, "readings", "claims_by_reading", "numbers_by_reading"
         ),
     output:
         "results/{scale}/verified.json",

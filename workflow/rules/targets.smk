@@ -34,7 +34,7 @@ rule extended:
 # `extended` makes them too.
 rule readings:
     input:
-        of_readings("extended", READ, "readings", "claims_by_reading"),
+        of_readings("extended", READ, "readings"),
 
 
 # What `make verify-outcome` compares with docs/outcome.

@@ -164,6 +164,7 @@ class TableOfRuns(Job):
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
     reconstructed: bool
+    """Whether a map that it shows is not printed."""
     votes: dict[str, dict] | None
     """By metric, the numbers to which nothing was fitted; None if that are all."""
     paired: bool
@@ -172,6 +173,8 @@ class TableOfRuns(Job):
 
     def run(self, input_files, output_files, threads):
         """Make the table and its comparison."""
+        import pandas as pd
+
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.numbers import comparison, tables, wholes
         from bezierplan.running import inputs
@@ -181,6 +184,7 @@ class TableOfRuns(Job):
         runs = results.read(files, self.repeats, experiment)
         file = input_files.sources[0] if self.sources else None
         published = comparison.read_published(file, self.spec)
+        other_maps = [pd.read_csv(each) for each in input_files.readings]
         compared = comparison.compare(
             runs,
             self.spec,
@@ -190,6 +194,7 @@ class TableOfRuns(Job):
             self.name,
             self.reconstructed,
             self.votes,
+            *other_maps,
         )
         table = tables.pivot(runs, self.spec, self.labels, published)
         table.to_csv(output_files.table, lineterminator="\n")
@@ -279,26 +284,25 @@ class Readings(Job):
         """Judge the readings."""
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import by_reading
+        from bezierplan.analysis.numbers import comparison
         from bezierplan.analysis.readings import readings
         from bezierplan.running import inputs
 
-        functions = study_code.functions(self.code)
+        functions, files = study_code.functions(self.code), inputs.by_table(input_files.sources)
         published = results.published_tables(input_files.sources)
         covered = by_reading.covered(self.claims.study.claims, self.experiments)
         study = self.claims.study._replace(claims=covered)
-        quantities = readings.quantities(
-            self.tables, self.votes, inputs.by_table(input_files.sources)
-        )
         found = readings.read_problems(inputs.experiments(self.shows, input_files))
         made = readings.of_study(
             self.study,
-            quantities,
+            readings.quantities(self.tables, self.votes, files),
             readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {}),
             self.pairs,
             self.proposed,
             lambda found, among: by_reading.judged(
                 Material(study, found, published, functions, among)
             ),
+            lambda found: comparison.of_tables(found, self.tables, files, self.study),
         )
         for table, file in zip(made, output_files, strict=True):
             self.write(table, file)

@@ -43,6 +43,7 @@ number. Columns:
 """
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -126,6 +127,7 @@ def compare(
     name: str,
     reconstructed: bool = False,
     votes: dict[str, dict] | None = None,
+    by_reading: pd.DataFrame | None = None,
 ) -> pd.DataFrame:
     """The published numbers of a table next to ours, in the order of the table; the columns are
     described above.
@@ -134,7 +136,7 @@ def compare(
     method whose published numbers it is compared with. baselines: methods without a published
     number. Variants of the table's methods and baselines get rows, whether or not the table shows
     them. name: `study/table`, which seeds each row's random draws. reconstructed, votes: as in
-    `decides_nothing`.
+    `decides_nothing`. by_reading: as from `of_tables`, for each reading of the map.
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
@@ -170,7 +172,11 @@ def compare(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
-    reasons = decides_nothing(both, spec, reconstructed, votes)
+    on_open_map = pd.Series(reconstructed, both.index)
+    if by_reading is not None:
+        own = by_reading[by_reading["table"] == name.partition("/")[2]]
+        on_open_map &= ~(table["in_range"].eq(False) & _outside_in_all(both, own, key_columns))
+    reasons = decides_nothing(both, spec, on_open_map, votes)
     open_ones = (reasons != "") & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(open_ones, "inconclusive")
     table["why"] = table["why"].mask(open_ones, reasons)
@@ -181,14 +187,15 @@ def compare(
 
 
 def decides_nothing(
-    numbers: pd.DataFrame, spec: Pivot, reconstructed: bool, votes: dict[str, dict] | None
+    numbers: pd.DataFrame, spec: Pivot, on_open_map: pd.Series, votes: dict[str, dict] | None
 ) -> pd.Series:
     """Why each number of a table neither agrees nor disagrees with ours, wherever it lies; empty if
     it may. The rule of evidence:
 
-    - A quantity that the paper does not define, or a map that it does not print (`reconstructed`,
-      or one draw of a random one), decides nothing: our definition or our map may be wrong. How
-      near such numbers are is told, and a path that has such a length is named.
+    - A quantity that the paper does not define, or a map that it does not print (`on_open_map`, or
+      one draw of a random one), decides nothing: our definition or our map may be wrong. How near
+      such numbers are is told, and a path that has such a length is named. Where other maps are
+      declared, a number that lies outside on each of them disagrees all the same.
     - A number to which something was fitted has no vote. votes: metric -> which numbers of the
       table have one (column -> value or list of values); None for a table to which nothing was
       fitted.
@@ -202,11 +209,39 @@ def decides_nothing(
     for reason, whose in (
         (FITTED, ~voted & (votes is not None)),
         (ONE_DRAW, numbers["draws"].eq(1)),
-        (NO_MAP, pd.Series(reconstructed, numbers.index)),
+        (NO_MAP, on_open_map),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
         reasons = reasons.mask(whose, reason)
     return reasons
+
+
+def of_tables(
+    results: dict[str, Results], tables: dict[str, Pivot], files: dict[str, str], study: str
+) -> pd.DataFrame:
+    """The printed numbers of those tables that show some results, with the columns table, keys of
+    all tables, metric, statistic, in_range. files: of published numbers.
+    """
+    own = {name: spec for name, spec in tables.items() if spec.experiment in results}
+    frames = []
+    for name, spec in own.items():
+        published = read_published(files[Path(spec.published).stem], spec)
+        compared = compare(results[spec.experiment], spec, published, {}, [], f"{study}/{name}")
+        printed = compared[compared["value_published"].notna()]
+        keys = published.columns[: published.columns.get_loc("metric")]
+        frames.append(printed[[*keys, "metric", "statistic", "in_range"]].assign(table=name))
+    return pd.concat(frames, ignore_index=True)
+
+
+def _outside_in_all(
+    numbers: pd.DataFrame, by_reading: pd.DataFrame, key_columns: list[str]
+) -> np.ndarray:
+    """Whether each number (n,) lies outside under every one of several readings."""
+    keys = [*key_columns, "metric", "statistic"]
+    outside = by_reading["in_range"].eq(False)
+    found = outside.groupby([by_reading[key] for key in keys]).agg(["all", "size"])
+    always = found.index[found["all"] & (found["size"] > 1)]
+    return pd.MultiIndex.from_frame(numbers[keys]).isin(always)
 
 
 def counted_as(numbers: pd.DataFrame) -> pd.Series:

@@ -22,7 +22,10 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
-AUDIT, READINGS = "audit.csv", ("readings.csv", "claims_by_reading.csv")
+AUDIT, READINGS = (
+    "audit.csv",
+    ("readings.csv", "claims_by_reading.csv", "numbers_by_reading.csv"),
+)
 BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"

@@ -13,7 +13,9 @@ For the others there is a p of fit (`fit`), which decides no number, as most map
 
 Columns of the readings: study; reading; meaning (what it changes, in words); excluded_by; p (how
 well the printed numbers that vote fit; empty if it was not run); order (`lowest_order`); numbers
-(how many vote). Columns of claims by reading: study; id (of the claim); reading; verdict.
+(how many vote). Columns of claims by reading: study; id (of the claim); reading; verdict. Columns
+of numbers by reading, of those on a map that some readings change, under each that nothing
+excludes: table; key columns; metric; statistic; reading; in_range (as in `comparison`).
 """
 
 import math
@@ -257,7 +259,7 @@ class Runner(NamedTuple):
         """What is run under a reading; nothing if its settings exclude each other."""
         made = []
         for name, each in self.experiments.items():
-            moved = bool(self._changed(name, reading))
+            moved = name in self.moved(reading)
             for default in each.chunks.values():
                 chunk = under(default, reading, self.assumptions)
                 if moved:
@@ -289,6 +291,10 @@ class Runner(NamedTuple):
         if place not in self.shared_runs:
             self.shared_runs[place] = execution.run_chunk(world, part.chunk)[0].to_pandas()
         return self.shared_runs[place]
+
+    def moved(self, reading: Reading) -> list[str]:
+        """The experiments whose maps are others under a reading."""
+        return [name for name in self.experiments if self._changed(name, reading)]
 
     def _changed(self, experiment: str, reading: Reading) -> dict[str, dict[str, Any]]:
         """The descriptions of workspaces that a reading changes."""
@@ -343,10 +349,13 @@ def of_study(
     pairs: list[Reading],
     proposed: str | None,
     judge: Callable[[dict[str, Results], int], pd.DataFrame],
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """The readings of a study, and its claims by reading, but under those that do not fit where one
-    does. judge: the verdicts on claims (id,
-    verdict) from the results of one of so many readings.
+    compare: Callable[[dict[str, Results]], pd.DataFrame],
+) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """The readings of a study; its claims by reading, but under those that do not fit where one
+    does; and its numbers by reading.
+
+    judge: the verdicts on claims (id, verdict) from the results of one of so many readings.
+    compare: the numbers of tables beside the results of some experiments.
     """
     by_id = {each.id: each for each in runner.assumptions}
     tried = []
@@ -356,7 +365,8 @@ def of_study(
         why = "; ".join(sentences) or ("" if chunks else "its settings exclude each other")
         runs = sum(made.chunk.runs for made in chunks if made.own or not reading)
         tried.append((reading, chunks, why, runs))
-    rows, verdicts, fits, done = [], [], False, 0
+    rows, verdicts, numbers, fits, done = [], [], [], False, 0
+    on_open_maps = {name for reading, *_ in tried for name in runner.moved(reading)}
     among, every = (sum(values) for values in zip(*((not why, runs) for *_, why, runs in tried)))
     for number, (reading, chunks, why, runs) in enumerate(tried, 1):
         name, p, order = name_of(reading), math.nan, math.nan
@@ -369,6 +379,10 @@ def of_study(
             p = fit.p_of_fit(groups(quantities, results), generator(f"{study}/{name}/fit"))
             order = lowest_order(quantities, results)
             fits |= p >= LEAST_P and not why
+            moved = runner.moved(reading) if reading else on_open_maps
+            if moved and not why:
+                compared = compare({each: results[each] for each in moved})
+                numbers.append(compared.assign(reading=name))
             if not why and (p >= LEAST_P or not fits):
                 verdicts.append(judge(results, among).assign(study=study, reading=name))
         rows.append(
@@ -383,4 +397,9 @@ def of_study(
             }
         )
     columns = ["study", "id", "reading", "verdict"]
-    return pd.DataFrame(rows), pd.concat(verdicts, ignore_index=True)[columns]
+    none = pd.DataFrame(columns=["table", "metric", "statistic", "reading", "in_range"])
+    return (
+        pd.DataFrame(rows),
+        pd.concat(verdicts, ignore_index=True)[columns],
+        pd.concat(numbers, ignore_index=True) if numbers else none,
+    )
