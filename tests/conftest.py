@@ -27,6 +27,7 @@ SOURCE = str(ROOT / "src")
 sys.path[:0] = [SOURCE, str(ROOT / "docs")]
 os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.get("PYTHONPATH")])])
 
+import pytest  # noqa: E402
 from hypothesis import configuration, settings  # noqa: E402
 
 from bezierplan.analysis import study_code  # noqa: E402
@@ -71,6 +72,23 @@ LONGEST = (
     "test_exact_properties.py",
     "test_archive.py",
 )
+
+
+@pytest.fixture
+def planners_are_read_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files of planners are read without a process of their own first, which takes a second each;
+    `test_guard` and `test_truth` have those.
+    """
+    from bezierplan.running.guard import interface, process
+
+    answers = process.answers
+
+    def of_file_here(work: str, given: dict, *others: object) -> list:
+        if work == "guard.interface.described":
+            return [*interface.described(str, **given)]
+        return answers(work, given, *others)
+
+    monkeypatch.setattr(process, "answers", of_file_here)
 
 
 def pytest_xdist_auto_num_workers() -> int:

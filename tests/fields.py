@@ -23,12 +23,13 @@ BENCHMARK_MAPS = (
 )
 
 
-def benchmark(name: str) -> Problem:
-    """One of these maps, with its own ends."""
+def benchmark(name: str) -> tuple[Problem, float]:
+    """One of these maps with its own ends, and the length of the shortest path that it states."""
     text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
     ends = [tuple(properties[end]) for end in ("start", "target")]
-    return Problem(name, polygons_from_geojson(text, "m"), *ends)
+    polygons = polygons_from_geojson(text, "m")
+    return Problem(name, polygons, *ends), properties["shortest_path_length_m"]
 
 
 def among_circles(circles, start=(0.0, 0.0), target=(4.0, 6.0)) -> Problem:

@@ -157,16 +157,6 @@ def test_polyline_measured_along_its_length_is_exact():
     )
 
 
-def test_occupied_control_points_cost_what_the_setting_says():
-    grid = random_grid(3)
-    found = plan(grid, occupied_point_penalty=7.0, generations=0, population=2)
-    length, bad = reference(found.path, grid, 601)
-    column, row = (found.path.points / 10).astype(int).T
-    assert found.objective == pytest.approx(
-        length + 10 * bad + 7 * grid.occupied[row, column].sum()
-    )
-
-
 BITS, GENES = 8, 6
 
 

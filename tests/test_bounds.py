@@ -2,7 +2,6 @@
 themselves are free.
 """
 
-import csv
 import itertools
 import math
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 import scipy
 import shapely
-from fields import benchmark
+from fields import BENCHMARK_MAPS, benchmark
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
@@ -28,17 +27,11 @@ from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
-DATA = Path(__file__).parent / "data"
-MAPS = DATA / "maps"
+MAPS = Path(__file__).parent / "data" / "maps"
 ROOT2 = math.sqrt(2)
 WORLD = (-10.0, 10.0, -10.0, 10.0)
 EQUAL = ((1.5, 4.5, 1.2), (4.0, 3.0, 1.2), (1.2, 1.5, 1.2))
 PUBLIC = ((1.5, 4.5, 1.5), (4.0, 3.0, 1.0), (1.2, 1.5, 0.8))
-
-
-def reference(quantity):
-    with (DATA / "reference_lengths.csv").open(newline="") as file:
-        return [row for row in csv.DictReader(file) if row["quantity"] == quantity]
 
 
 def grid_map(file, cell=1.0):
@@ -78,26 +71,12 @@ def assert_is_path(bound, problem):
     assert check(pieces(bound), region(problem.workspace)).feasible
 
 
-@pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
-def test_shortest_paths_of_the_benchmark_maps(row):
-    problem = benchmark(row["map"])
+@pytest.mark.parametrize("name", sorted(file.stem for file in BENCHMARK_MAPS.glob("*.geojson")))
+def test_shortest_paths_of_the_benchmark_maps(name):
+    problem, length = benchmark(name)
     bound = shortest_path(problem)
-    assert bound.length == pytest.approx(float(row["value"]), abs=1e-5)
+    assert bound.length == pytest.approx(length, abs=1e-5)
     assert_is_path(bound, problem)
-
-
-def occupied_by(polygons, side):
-    """Cells that an obstacle overlaps with positive area. The cell is shrunk, not the obstacle."""
-    _, width, _, height = polygons.bounds
-    x, y = np.meshgrid(
-        np.arange(round(width / side)) * side, np.arange(round(height / side)) * side
-    )
-    boxes = shapely.box(x + 1e-7, y + 1e-7, x + side - 1e-7, y + side - 1e-7)
-    obstacles = shapely.union_all(
-        [shapely.Polygon(rings[0], rings[1:]) for rings in polygons.obstacles]
-    )
-    shapely.prepare(obstacles)
-    return shapely.intersects(obstacles, boxes)
 
 
 SONG = [
@@ -295,22 +274,6 @@ def test_paths_among_polygons(obstacles, start, target, length):
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(length, rel=1e-12)
     assert_is_path(bound, problem)
-
-
-@pytest.mark.parametrize(
-    ("rule", "length"), [("free", ROOT2), ("one", math.inf), ("none", math.inf)]
-)
-def test_a_diagonal_between_two_occupied_cells(rule, length):
-    assert lattice_path(np.eye(2, dtype=bool)[::-1], (0, 0), (1, 1), ROOT2, rule).length == length
-
-
-@pytest.mark.parametrize(("rule", "length"), [("free", ROOT2), ("one", ROOT2), ("none", 2)])
-def test_a_diagonal_beside_an_occupied_cell(rule, length):
-    occupied = np.zeros((3, 2), dtype=bool)
-    occupied[1, 0] = True
-    bound = lattice_path(occupied, (0, 0), (1, 1), ROOT2, rule)
-    assert bound.length == length
-    assert bound.points[[0, -1]].tolist() == [[0.5, 0.5], [1.5, 1.5]]
 
 
 @pytest.mark.parametrize("weight", [1.5, ROOT2, 0.9, 2.5])

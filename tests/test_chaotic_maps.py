@@ -53,34 +53,6 @@ def test_lyapunov_exponents_are_the_known_ones(name, exponent):
     assert np.mean(found) == pytest.approx(exponent, abs=0.05)
 
 
-@pytest.mark.parametrize(
-    ("name", "mean", "deviation", "correlation"),
-    [
-        ("gauss", 0.443, 0.288, -0.35),
-        ("singer", 0.639, 0.289, -0.50),
-        ("tent", 0.501, 0.288, 0.40),
-        ("circle", 0.449, 0.259, 0.04),
-        ("logistic", 0.499, 0.354, 0.0),
-        ("sine", 0.468, 0.354, 0.07),
-        ("piecewise", 0.500, 0.289, 0.0),
-        ("sinusoidal", 0.728, 0.144, -0.20),
-    ],
-)
-def test_long_run_mean_deviation_and_correlation(name, mean, deviation, correlation):
-    values = sequence(
-        name, 0.3141592653589793 if name != "sinusoidal" else 0.7, 400_000, MU
-    ).values[100:]
-    assert values.mean() == pytest.approx(mean, abs=0.004)
-    assert values.std() == pytest.approx(deviation, abs=0.004)
-    assert np.corrcoef(values[1:], values[:-1])[0, 1] == pytest.approx(correlation, abs=0.012)
-
-
-def test_gauss_does_not_stay_below_seven_tenths():
-    # Its invariant density 1 / (ln 2 (1 + x)) leaves 1 - log2 1.7 above 0.7.
-    values = sequence("gauss", 0.3141592653589793, 400_000, MU).values
-    assert np.mean(values > 0.7) == pytest.approx(1 - np.log2(1.7), abs=0.004)
-
-
 @given(st.sampled_from(CHAOTIC), st.floats(0, 1), st.floats(0.9, 1.08))
 def test_every_value_lies_from_0_to_1_whatever_the_start(name, start, mu):
     values = sequence(name, start, 100, mu).values

@@ -4,7 +4,6 @@ near.
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
-MAPS = Path(__file__).parent / "data" / "maps"
 FREE = None
 
 

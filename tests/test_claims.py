@@ -35,7 +35,6 @@ DATA = checked.read(Path(__file__).parent / "data" / "claims.yaml")
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}
 UNITS = 40
-# By how much more units a power of 0.8 needs than one of a half.
 
 pytestmark = pytest.mark.filterwarnings("error")
 

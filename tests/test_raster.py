@@ -1,6 +1,5 @@
 """Cells drawn from polygons: which are occupied, and that check and bound see the polygons."""
 
-import json
 import logging
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from fields import BENCHMARK_MAPS
+from fields import BENCHMARK_MAPS, benchmark
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,7 +18,6 @@ from bezierplan.geometry.region import region
 from bezierplan.running import problems
 from bezierplan.workspaces import files, raster
 from bezierplan.workspaces.polygons import Polygons
-from bezierplan.workspaces.problem import Problem
 
 # Cells of 0.1 m whose centre lies in an obstacle or on its edge, counted with another program.
 OCCUPIED_CENTRES = {
@@ -40,15 +38,6 @@ def drawn(name, cell, rule):
     )
 
 
-def ends(name):
-    properties = json.loads((BENCHMARK_MAPS / f"{name}.geojson").read_text())["properties"]
-    return (
-        tuple(properties["start"]),
-        tuple(properties["target"]),
-        properties["shortest_path_length_m"],
-    )
-
-
 @pytest.mark.parametrize("name", OCCUPIED_CENTRES)
 def test_occupied_cells_of_the_benchmark_maps(name):
     grid = drawn(name, 0.1, "centre")
@@ -63,11 +52,9 @@ def test_occupied_cells_of_the_benchmark_maps(name):
 
 @pytest.mark.parametrize("name", OCCUPIED_CENTRES)
 def test_the_bound_is_that_of_the_polygons(name):
-    start, target, length = ends(name)
-    grid = drawn(name, 0.5, "overlap")
-    assert shortest_paths.shortest_path(Problem(name, grid, start, target)).length == pytest.approx(
-        length, abs=1e-5
-    )
+    problem, length = benchmark(name)
+    drawn_map = problem._replace(workspace=drawn(name, 0.5, "overlap"))
+    assert shortest_paths.shortest_path(drawn_map).length == pytest.approx(length, abs=1e-5)
 
 
 @given(st.data())

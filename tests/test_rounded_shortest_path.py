@@ -67,7 +67,7 @@ def assert_sound(problem, plan, turning_radius):
     ("turning_radius", "offset"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)]
 )
 def test_benchmark_maps(name, turning_radius, offset):
-    problem = benchmark(name)
+    problem, _ = benchmark(name)
     plan = rounded(problem, turning_radius, offset)
     found, bound = assert_sound(problem, plan, turning_radius)
     if turning_radius < 1:
@@ -76,7 +76,7 @@ def test_benchmark_maps(name, turning_radius, offset):
 
 
 def test_without_a_radius_it_is_the_shortest_path():
-    problem = benchmark("complex2")
+    problem, _ = benchmark("complex2")
     assert rounded(problem, 0.0).objective == pytest.approx(
         shortest_path(problem).length, abs=1e-12
     )

@@ -11,6 +11,8 @@ from bezierplan.places import STUDIES
 from bezierplan.schema.checked import Fault
 from bezierplan.study import checks, reading
 
+pytestmark = pytest.mark.usefixtures("planners_are_read_here")
+
 WALKS = Path(__file__).parent / "data" / "walks"
 
 

@@ -7,8 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
@@ -17,10 +15,6 @@ from bezierplan.geometry.region import blocks, region
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
-
-SIDE = 6.0
-LATTICE = st.integers(0, 12).map(lambda value: value / 2)
-PLACE = st.tuples(LATTICE, LATTICE)
 
 
 def outer(circles):
@@ -177,15 +171,3 @@ def test_so_it_is_in_a_field_where_most_circles_are_hidden():
     clear = (np.hypot(*(centres[:, None] - ends).T) > radii + 0.01).all(axis=0)
     circles = Circles((0.0, 9.0, 0.0, 9.0), centres[clear], radii[clear], "m")
     assert len(assert_same(Problem("", circles, *map(tuple, ends))).points) > 20
-
-
-@given(
-    st.lists(st.tuples(LATTICE, LATTICE, st.sampled_from([0.25, 0.5, 1.0, 1.25])), max_size=6),
-    PLACE,
-    PLACE,
-)
-def test_so_it_is_where_circles_touch_and_line_up(table, start, target):
-    table = np.array(table, dtype=float).reshape(-1, 3)
-    circles = Circles((0.0, SIDE, 0.0, SIDE), table[:, :2], table[:, 2], "m")
-    assume(not any(blocks(region(circles), end) for end in (start, target)))
-    assert_same(Problem("", circles, start, target))
