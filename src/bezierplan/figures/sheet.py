@@ -143,6 +143,7 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
     """
     room = width - _BESIDE
     axes.set_title(_in_lines(heading, room))
+    axes.set_anchor("N")
     if axes.name == "3d":
         return
     if axes.get_aspect() == "auto" and axes.get_box_aspect() is None:

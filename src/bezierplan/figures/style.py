@@ -98,7 +98,7 @@ LOOK_OF_PLANNER = {
     "shortest_path": "purple",
     "shortest_cell_path": "purple",
     "straight_line": "grey",
-    "prm": "brown",
+    "prm": "olive",
     "binary_genetic": "blue",
     "bca": "green",
     "node_genetic": "pink",
