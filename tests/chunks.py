@@ -1,4 +1,6 @@
-"""A chunk of runs that needs no study: straight lines past a circle, and through it."""
+"""Chunks of runs that need no study: straight lines past a circle, and through it; and bends below
+one.
+"""
 
 import numpy as np
 
@@ -22,4 +24,17 @@ CHUNK = Chunk(
     presets={},
     seeds="own",
     repeats=[0, 2],
+)
+DISC = Problem(
+    "disc",
+    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
+    (1.0, 5.0),
+    (9.0, 5.0),
+)
+BENDS = CHUNK._replace(
+    study="study",
+    experiment="bends",
+    method="bend",
+    planner="bend",
+    problems={"disc": {"workspace": "field"}},
 )

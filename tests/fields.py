@@ -17,10 +17,10 @@ from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
-# The six benchmark maps of elhoseny2017.
-BENCHMARK_MAPS = (
-    File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
-)
+STUDIES = File(__file__).resolve().parents[1] / "config" / "studies"
+# The six benchmark maps of elhoseny2017, and the map of song2016.
+BENCHMARK_MAPS = STUDIES / "elhoseny2017" / "workspaces"
+CELLS = STUDIES / "song2016" / "workspaces" / "figure2.txt"
 
 
 def benchmark(name: str) -> tuple[Problem, float]:

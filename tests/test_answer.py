@@ -6,35 +6,23 @@ import json
 
 import numpy as np
 import pytest
+from chunks import BENDS, DISC
 
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
 from bezierplan.running import answer, execution, planning, problems
-from bezierplan.running.chunk import Chunk, Condition
+from bezierplan.running.chunk import Condition
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import plain
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.problem import Path
 
-PROBLEM = Problem(
-    "disc",
-    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
-    (1.0, 5.0),
-    (9.0, 5.0),
-)
-LINE = np.array([PROBLEM.start, PROBLEM.target])
+LINE = np.array([DISC.start, DISC.target])
 PLAN = Plan(Path("polyline", LINE), 8.0, True, 1, np.array([8.0]), "one", {"tries": 1})
-CHUNK = Chunk(
-    study="s",
-    experiment="e",
-    method="m",
+CHUNK = BENDS._replace(
     planner="chaotic_pso",
     settings={"inertia": 1.0},
-    problems={"disc": {"workspace": "field"}},
     vary={"profile": ["a"]},
     presets={"profile": {"a": {}}},
-    seeds="own",
-    repeats=[0, 1],
 )
 CONDITION = Condition("disc", {"profile": "a"})
 
@@ -152,7 +140,7 @@ LIES = {
 
 
 def row(plan):
-    return execution.row(CHUNK, CONDITION, 0, plan, True, PROBLEM, region(PROBLEM.workspace))
+    return execution.row(CHUNK, CONDITION, 0, plan, True, DISC, region(DISC.workspace))
 
 
 @pytest.mark.parametrize("lie", LIES)
@@ -162,21 +150,13 @@ def test_lie_is_refused_by_run_and_field(lie):
         row(plan)
     message = str(caught.value)
     assert message.startswith(
-        f"run s/e/disc,profile=a/m/0: planner chaotic_pso: its answer: {told}"
+        f"run study/bends/disc,profile=a/bend/0: planner chaotic_pso: its answer: {told}"
     )
     assert "\n" not in message
 
 
-@pytest.mark.parametrize("name", sorted(TAKEN))
-def test_no_column_is_overwritten(name):
-    with pytest.raises(
-        RuntimeError, match=f"extra: {name}: a column or setting has this name already"
-    ):
-        row(PLAN._replace(extra={name: True}))
-
-
 def test_names_that_are_taken_are_those_that_are_joined():
-    bounds = problems.bounds_of({"disc": PROBLEM}).column_names
+    bounds = problems.bounds_of({"disc": DISC}).column_names
     assert set(bounds) <= TAKEN
     assert {"cpu_s", "wall_s", "least_arrival", "replans_late"} <= TAKEN
 
@@ -191,7 +171,7 @@ def test_honest_answers_pass():
         )
     )
     assert not nothing["feasible"]
-    curve = np.array([PROBLEM.start, (1.0, 2.0), PROBLEM.target, (1.0, 2.0)])
+    curve = np.array([DISC.start, (1.0, 2.0), DISC.target, (1.0, 2.0)])
     assert row(path(curve, "ferguson"))["path_curve"] == "ferguson"
 
 
@@ -199,7 +179,7 @@ def test_the_row_holds_what_was_judged():
     """A planner that changes its arrays later changes nothing."""
     points, history = LINE.copy(), np.array([8.0])
     kept = answer.accepted(
-        PLAN._replace(path=Path("polyline", points), history=history), PROBLEM, TAKEN
+        PLAN._replace(path=Path("polyline", points), history=history), DISC, TAKEN
     )
     points[:], history[:] = 0.0, -1.0
     assert kept.path.points.tolist() == LINE.tolist()
@@ -214,7 +194,7 @@ def test_text_holds_all_bits_of_a_plan(plan):
 
 
 def test_a_region_shares_no_memory_with_its_workspace():
-    circles = PROBLEM.workspace
+    circles = DISC.workspace
     made = region(circles)
     assert not np.shares_memory(made.centres, circles.centres)
     assert not np.shares_memory(made.radii, circles.radii)

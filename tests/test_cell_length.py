@@ -18,16 +18,6 @@ def polyline(*points):
     return Path("polyline", np.array(points, dtype=float))
 
 
-def measured(x, y):
-    """cells4, cells8 and length of a polyline whose vertices are given in coordinates in which
-    cells have whole centres.
-    """
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    cells = cell_length.touched_cells(x + 0.5, y + 0.5)
-    length = cell_length.sum_of_steps(x, y, np.empty(len(x)))
-    return cell_length.cells4(*cells), cell_length.cells8(*cells), length
-
-
 STRAIGHT = [
     ((0, 0), (100, 100), 150.0, 150.0),
     ((100, 0), (0, 100), 150.0, 150.0),

@@ -562,15 +562,7 @@ def clearances(monkeypatch, truth):
     for method, repeat in itertools.product(
         ("aco", "ga", "aco_ga", "asfa_ga", "bca", "bca_q"), range(80)
     ):
-        height = (
-            1
-            + (
-                (0.4 if method == "bca_q" else 0.1)
-                if truth
-                else (0.1 if method == "bca_q" else 0.4)
-            )
-            + 0.0001 * repeat
-        )
+        height = 1 + (0.4 if (method == "bca_q") == truth else 0.1) + 0.0001 * repeat
         points = [0.0, height, 4.0, height]
         rows.append(
             {

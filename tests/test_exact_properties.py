@@ -4,12 +4,11 @@ depends on how a problem is written.
 
 import itertools
 import math
-from pathlib import Path as File
 
 import numpy as np
 import pytest
 import shapely
-from fields import BENCHMARK_MAPS
+from fields import BENCHMARK_MAPS, CELLS
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -29,7 +28,6 @@ from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
-MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
 
 # Curves of every degree, and the one whose control points are no points of the plane alone;
@@ -160,7 +158,7 @@ def random_workspaces(kind, rng):
             for n in (3, 8, 12)
         ]
     if kind == "cells":
-        song = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
+        song = from_lines(CELLS.read_text().splitlines(), 10.0, "m")
         return [
             song,
             Grid(rng.random((12, 12)) < 0.25, 1.0, "m"),

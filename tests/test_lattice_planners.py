@@ -3,10 +3,10 @@ of its environments.
 """
 
 import math
-from pathlib import Path as File
 
 import numpy as np
 import pytest
+from fields import STUDIES
 from studies import planned, study
 
 from bezierplan.geometry import checker, curves, shortest_paths
@@ -15,8 +15,6 @@ from bezierplan.planners import ant_colony
 from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
-
-MAPS = File(__file__).parent / "data" / "maps" / "ma2020"
 
 COLONY = study("ma2020").resolved("aco")
 VARIANTS = {
@@ -40,7 +38,7 @@ def colony_rules(**changes):
 
 
 def environment(number):
-    lines = (MAPS / f"environment{number}.txt").read_text().splitlines()
+    lines = (STUDIES / f"ma2020/workspaces/environment{number}.txt").read_text().splitlines()
     return Problem("test", from_lines(lines, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
 
 

@@ -3,7 +3,6 @@ beside what the papers' texts tell of the printed one (`layout.yaml` of each stu
 """
 
 import re
-import shutil
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -251,38 +250,6 @@ def float_or_text(value):
 @pytest.mark.parametrize(("study", "name"), [each for each in EVERY if layout_of(*each).conditions])
 def test_runs_behind_an_artefact_have_the_conditions_of_print(study, name):
     assert list(unmet(studies()[study], name, layout_of(study, name).conditions, {})) == []
-
-
-def without_a_row(file):
-    file.write_text("".join(file.read_text().splitlines(keepends=True)[:-1]))
-
-
-def without_a_digit(file):
-    file.write_text(file.read_text().rstrip("\n")[:-1] + "\n")
-
-
-def without_a_panel(file):
-    rows = text(file)
-    rows[rows["panel"] != rows["panel"].iloc[-1]].to_csv(file, index=False)
-
-
-@pytest.mark.parametrize(
-    ("name", "ending", "spoil"),
-    [
-        *(
-            ("table1", ending, without_a_row)
-            for ending in ("csv", "published.csv", "comparison.csv")
-        ),
-        *(("table1", ending, without_a_digit) for ending in ("csv", "published.csv")),
-        ("figure4", "csv", without_a_panel),
-    ],
-)
-def test_a_row_a_digit_or_a_panel_that_is_taken_away_is_seen(tmp_path, name, ending, spoil):
-    for file in (SMOKE / "song2016/paper").glob(f"{name}.*"):
-        shutil.copy(file, tmp_path)
-    assert faults("song2016", name, tmp_path) == []
-    spoil(tmp_path / f"{name}.{ending}")
-    assert faults("song2016", name, tmp_path)
 
 
 FIGURES = [each for each in EVERY if each[1].startswith("figure")]

@@ -199,13 +199,6 @@ def test_a_huge_image_is_refused_before_it_is_read(tmp_path):
         bp.read_map(tmp_path / "huge.pgm", resolution=1.0)
 
 
-def test_what_is_no_image_is_refused(tmp_path):
-    ros_map(tmp_path)
-    (tmp_path / "room.png").write_text("P5, but not really")
-    with pytest.raises(ValueError, match=r"image: room.png: cannot be read as an image"):
-        files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
-
-
 def test_a_robots_radius_leaves_cells_free_that_are_as_far():
     wide = np.zeros((11, 11), dtype=bool)
     wide[5, 5] = True

@@ -236,33 +236,16 @@ def test_the_best_path_so_far_is_kept_if_wanted():
 # First populations
 
 
-def first_paths(grid, count):
-    """Random first paths, as lists of cells."""
-    ground = ground_of(grid, 1.0)
-    rules = filled(node_genetic.Settings, SETTINGS)
-    free = np.setdiff1d(np.flatnonzero(~grid.occupied), [0, grid.occupied.size - 1])
-    rng, paths = np.random.default_rng(0), []
-    for _ in range(count):
-        path = np.zeros(14, dtype=np.int64)
-        size = node_genetic._first_path(rng, path, grid.occupied.size - 1, free, ground, rules)
-        paths.append(path[:size].tolist())
-    return paths
-
-
-def test_the_last_cells_that_are_left_are_found():
-    """From the start of a corridor one cell is visible beside 300 that are not."""
-    occupied = np.ones((20, 20), dtype=bool)
-    occupied[0, :3] = occupied[:3, 2] = occupied[2, 2:] = occupied[2:, 5:] = False
-    grid = Grid(occupied, 1.0, "cell")
-    paths = first_paths(grid, 30)
-    assert {path[1] for path in paths} == {1, 2}
-
-
-def test_walks_that_see_no_new_cell_begin_again():
-    """A dead end of a single cell beside the start."""
-    grid = from_lines(["##..", "##.#", "#..#", "..##"], 1.0, "cell")
-    for path in first_paths(grid, 100):
-        assert path[-1] == 15
+def test_first_paths_are_found_in_corridors_and_dead_ends():
+    """From the start of a corridor one cell is visible beside 300 that are not; and walks that see
+    no new cell, in a dead end of a single cell beside the start, begin again.
+    """
+    corridor = np.ones((20, 20), dtype=bool)
+    corridor[0, :3] = corridor[:3, 2] = corridor[2, 2:] = corridor[2:, 5:] = False
+    dead_end = from_lines(["##..", "##.#", "#..#", "..##"], 1.0, "cell")
+    for grid in (Grid(corridor, 1.0, "cell"), dead_end):
+        found = plan(problem(grid), generations=0, population=100)
+        assert found.extra["feasible_last"] == 1.0
 
 
 # Operators

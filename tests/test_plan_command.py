@@ -11,7 +11,7 @@ import shlex
 import numpy as np
 import pytest
 import yaml
-from fields import BENCHMARK_MAPS
+from fields import BENCHMARK_MAPS, CELLS
 from PIL import Image
 
 import bezierplan as bp
@@ -20,7 +20,6 @@ from bezierplan.commands import plan
 from bezierplan.geometry import shortest_paths
 
 GAPS = str(BENCHMARK_MAPS / "gaps.geojson")
-CELLS = str(BENCHMARK_MAPS.parents[1] / "song2016" / "workspaces" / "figure2.txt")
 ENDS = ["--start", "2,10", "--target", "18,10"]
 SHORTEST = 29.565803670
 
@@ -253,6 +252,10 @@ FAULTS = {
     "folder": (
         [GAPS, *ENDS, "--out", "nowhere/path.svg"],
         "nowhere/path.svg: No such file",
+    ),
+    "a radius below 0": (
+        [GAPS, *ENDS, "--robot-radius", "-1"],
+        "--robot-radius: -1; expected 0 or a number of at least 1e-06",
     ),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
     "rule": ([GAPS, *ENDS, "--cell", "1", "--rule", "some"], "--rule: some: unknown"),

@@ -62,16 +62,6 @@ def test_meledje_counts_out_of_100_trials(table):
         assert sum(int(text) for text in texts[:3]) == 100
 
 
-@pytest.mark.parametrize(("table", "total"), [("table3", 36.0), ("table4", 36.1), ("table5", 13.8)])
-def test_mean_ranks_of_tharwat2018(table, total):
-    """Those of k methods add to k (k + 1) / 2: to 36 in Tables 3 and 4, up to rounding; those of
-    Table 5 do not add to 15.
-    """
-    assert sum(float(texts[1]) for _, *texts in printed("tharwat2018", table)) == pytest.approx(
-        total
-    )
-
-
 # How many runs a number is of, and in which unit of length.
 RUNS = {
     "elhoseny2017": ("10", "cell"),

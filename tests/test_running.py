@@ -5,22 +5,13 @@ and stable times.
 import time
 from types import ModuleType
 
-import numpy as np
 import pytest
+from chunks import BENDS, DISC
 
 from bezierplan.analysis.run_tables import row_text
 from bezierplan.running import execution
-from bezierplan.running.chunk import Chunk
 from bezierplan.running.guard import interface, worker
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.problem import Problem
 
-PROBLEM = Problem(
-    "disc",
-    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
-    (1.0, 5.0),
-    (9.0, 5.0),
-)
 PLANNER = """
 import numpy as np
 from bezierplan.planners import Path, Plan
@@ -36,18 +27,7 @@ def plan(problem, rng, *, bend: float):
 
 
 def chunk(**changed):
-    return Chunk(
-        study="study",
-        experiment="bends",
-        method="bend",
-        planner="bend",
-        settings={},
-        problems={"disc": {"workspace": "field"}},
-        vary={"bend": [0.0, 1.0, 2.0]},
-        presets={},
-        seeds="own",
-        repeats=[4, 10],
-    )._replace(**changed)
+    return BENDS._replace(vary={"bend": [0.0, 1.0, 2.0]}, repeats=[4, 10], **changed)
 
 
 @pytest.fixture
@@ -68,7 +48,7 @@ def planner(monkeypatch):
 
 def test_rows_stand_in_order_and_do_not_depend_on_it(planner, monkeypatch):
     given = planner()
-    runs, times = execution.run_chunk({"disc": PROBLEM}, given)
+    runs, times = execution.run_chunk({"disc": DISC}, given)
     assert runs["id"].to_pylist() == [
         f"study/bends/disc,bend={bend}/bend/{repeat}"
         for bend in (0.0, 1.0, 2.0)
@@ -80,7 +60,7 @@ def test_rows_stand_in_order_and_do_not_depend_on_it(planner, monkeypatch):
         "_order",
         lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats],
     )
-    again, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    again, _ = execution.run_chunk({"disc": DISC}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
 
 
@@ -111,7 +91,7 @@ DRAWS = {
 def test_whether_random_numbers_were_drawn_is_a_fact(planner, capsys, case):
     line, drew = DRAWS[case]
     given = planner(f"    {line}\n    made.append", "from types import SimpleNamespace\n")
-    runs, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    runs, _ = execution.run_chunk({"disc": DISC}, given)
     assert set(runs["drew"].to_pylist()) == {drew}
     told = f"run study/bends/*/bend: planner bend: {worker.UNDRAWN}\n"
     assert capsys.readouterr().err == ("" if drew else told)
@@ -119,7 +99,7 @@ def test_whether_random_numbers_were_drawn_is_a_fact(planner, capsys, case):
 
 def test_a_planner_that_draws_nothing_and_says_so_is_not_told_of_it(planner, capsys):
     given = planner("    rng = np.random.default_rng(1)\n    made.append", "deterministic = True\n")
-    execution.run_chunk({"disc": PROBLEM}, given)
+    execution.run_chunk({"disc": DISC}, given)
     assert capsys.readouterr().err == ""
 
 
@@ -128,7 +108,7 @@ def test_a_planner_that_finds_nothing_in_any_repeat_has_runs(planner, capsys):
         "    rng.random()\n    return Plan(None, np.inf, False, 1, np.array([np.inf]), '', {})\n"
         "    made.append"
     )
-    runs, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    runs, _ = execution.run_chunk({"disc": DISC}, given)
     assert runs["feasible"].to_pylist() == [False] * 18
     assert capsys.readouterr().err == ""
 
@@ -183,7 +163,7 @@ def test_run_that_cannot_be_repeated_is_refused(fault, planner):
     with pytest.raises(
         RuntimeError, match=r"with the same generator its run has another (objective|length)"
     ):
-        execution.run_chunk({"disc": PROBLEM}, given)
+        execution.run_chunk({"disc": DISC}, given)
 
 
 def test_planner_that_is_not_deterministic_as_it_says_is_refused(planner):
@@ -192,4 +172,4 @@ def test_planner_that_is_not_deterministic_as_it_says_is_refused(planner):
         RuntimeError,
         match="deterministic = True, but with another generator its run has another objective",
     ):
-        execution.run_chunk({"disc": PROBLEM}, given)
+        execution.run_chunk({"disc": DISC}, given)

@@ -62,20 +62,10 @@ def round_about(problem, state):
         points = np.array(
             [problem.start, ((problem.start[0] + problem.target[0]) / 2, middle), problem.target]
         )
-        bare = MovingCircles(
-            problem.workspace.bounds,
-            problem.workspace.bounds,
-            problem.workspace.centres,
-            np.zeros_like(problem.workspace.centres),
-            problem.workspace.radii,
-            "circles",
-            1.0,
-            1,
-            "m",
-        )
-        if math.isnan(
-            motion_check.check(Motion(points, np.array([0.0, 0.5, 1.0])), bare).collision_at
-        ):
+        home = problem.workspace
+        bare = circles(*((x, y, r, 0, 0) for (x, y), r in zip(home.centres, home.radii)))
+        motion = Motion(points, np.array([0.0, 0.5, 1.0]))
+        if math.isnan(motion_check.check(motion, bare).collision_at):
             return Plan(Path("polyline", points), 0.0, True, 1, np.zeros(1), "exact", {}), state
     return Plan(None, math.inf, False, 1, np.zeros(1), "none", {}), state
 

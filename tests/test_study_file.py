@@ -26,10 +26,6 @@ def folder(tmp_path):
 EXPERIMENTS = "experiments.yaml"
 
 
-def test_the_study_itself_has_no_fault(folder):
-    assert reading.load([folder])["song2016"].title
-
-
 def test_unknown_study_is_told_with_the_closest_name():
     with pytest.raises(Fault, match=r"song2061.*did you mean song2016\?"):
         reading.read_config({"studies": ["song2061"]})

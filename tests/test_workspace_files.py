@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from fields import BENCHMARK_MAPS
+from fields import BENCHMARK_MAPS, CELLS
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -20,7 +20,6 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.kinds import random_circles
 
-MAPS = Path(__file__).parent / "data" / "maps"
 SQUARE = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]
 BORDER = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]
 
@@ -333,7 +332,7 @@ def descriptions():
         "bounds": [-1, 1, -1, 1],
         "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]],
     }
-    yield {"kind": "grid", "unit": "cell", "file": "song2016.txt", "cell": 10}
+    yield {"kind": "grid", "unit": "cell", "file": CELLS.name, "cell": 10}
     for file in sorted(BENCHMARK_MAPS.glob("*.geojson")):
         yield {"kind": "polygons", "unit": "m", "file": str(file)}
         yield {"kind": "raster", "unit": "m", "file": str(file), "cell": 0.4, "rule": "overlap"}
@@ -345,7 +344,7 @@ def descriptions():
     ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}",
 )
 def test_text_gives_a_workspace_back_bit_by_bit(description):
-    text = files.to_json(files.load(description, MAPS))
+    text = files.to_json(files.load(description, CELLS.parent))
     assert files.to_json(files.from_json(text)) == text
 
 
