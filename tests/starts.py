@@ -1,12 +1,13 @@
-"""Starts of Snakemake for tests that need many: forks of a process that has imported it, for
-imports take two thirds of the time of a dry run. Modules of this package are not among them: each
-start takes those of its own tree.
+"""Starts of Python; and of Snakemake for tests that need many: forks of a process that has imported
+it, for imports take two thirds of the time of a dry run. Modules of this package are not among
+them: each start takes those of its own tree.
 """
 
 import cProfile
 import importlib
 import multiprocessing
 import os
+import subprocess
 import sys
 import tempfile
 from functools import partial
@@ -42,6 +43,23 @@ _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods(
 _STARTS = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
     _STARTS.set_forkserver_preload(_MODULES)
+
+
+def python(code: str, folder: Path, *homes: Path, **variables: str) -> str:
+    """What some code prints in a process of its own, which works in a folder. homes: where it finds
+    modules before others. variables: of its environment.
+    """
+    path = os.pathsep.join(map(str, [*homes, os.environ["PYTHONPATH"]]))
+    ended = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        env=os.environ | variables | {"PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
 
 
 def snakemake(

@@ -101,30 +101,15 @@ print(one, other)
 """
 
 
-def kernels(home):
-    """What a process prints that keeps its compiled code below a folder."""
-    environment = os.environ | {"HOME": str(home)}
-    return subprocess.run(
-        [sys.executable, "-c", SWAPS], env=environment, capture_output=True, text=True, check=False
-    )
-
-
 def test_damaged_compiled_code_is_compiled_again(tmp_path):
-    first = kernels(tmp_path)
-    assert first.returncode == 0
-    for which, content in (
-        ("*.nbi", b""),
-        ("*.nbi", b"garbage" * 100),
-        ("*.nbc", b""),
-        ("*.nbc", b"garbage" * 100),
-    ):
+    first = starts.python(SWAPS, tmp_path, HOME=str(tmp_path))
+    for which, content in (("*.nbi", b"garbage" * 100), ("*.nbc", b"")):
         files = list((tmp_path / ".cache").rglob(which))
         assert files
         for file in files:
             file.write_bytes(content)
-        again = kernels(tmp_path)
-        assert again.stdout == first.stdout, again.stderr
-        assert all(file.read_bytes() != content for file in files), (which, content)
+        assert starts.python(SWAPS, tmp_path, HOME=str(tmp_path)) == first
+        assert all(file.read_bytes() != content for file in files), which
 
 
 # A start with the settings of the default profile.

@@ -18,6 +18,8 @@ from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job
 
+pytestmark = pytest.mark.usefixtures("planners_are_read_here")
+
 # Of searches: the contract is that of a long one.
 FEW = {"generations": 5, "iterations": 5}
 

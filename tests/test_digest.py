@@ -1,32 +1,31 @@
 """Digests of code: what counts and what does not."""
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+import starts
 
 from bezierplan.machine import digest as digests
 
 SOURCE = Path(__file__).parents[1] / "src"
+SYNTAX = Path(__file__).parents[1] / ".cache" / "syntax"
 ASK = "from bezierplan.machine.digest import source_digest; print(source_digest(*{modules!r}))"
 
 
 @pytest.fixture
 def tree(tmp_path):
-    # As in a clone, so that caches lie beside it.
+    # As in a clone, so that caches lie beside it; to parse all modules takes longest.
     (tmp_path / "config" / "studies").mkdir(parents=True)
+    if SYNTAX.exists():
+        shutil.copytree(SYNTAX, tmp_path / ".cache" / "syntax")
     return Path(
         shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
     )
 
 
 def digest(tree, *modules):
-    command = [sys.executable, "-c", ASK.format(modules=modules)]
-    return subprocess.run(
-        command, env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True
-    ).stdout
+    return starts.python(ASK.format(modules=modules), tree, tree)
 
 
 def append(file, text):
@@ -115,6 +114,7 @@ def test_how_a_job_is_logged_does_not_count(tree):
 
 def test_syntax_that_was_kept_is_read_and_a_damaged_copy_is_made_anew(tree):
     module = "bezierplan.running.execution"
+    shutil.rmtree(tree.parent / ".cache", ignore_errors=True)
     first = digest(tree, module)
     kept = sorted((tree.parent / ".cache" / "syntax").iterdir())
     contents = [file.read_bytes() for file in kept]
@@ -138,14 +138,7 @@ print(sum(stats.cache_hits.values()), stats.cache_path)
 
 def kernel(tree):
     """Whether a kernel was found compiled, and the folder that it is kept in."""
-    answer = subprocess.run(
-        [sys.executable, "-c", KERNELS],
-        env={"PYTHONPATH": str(tree)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    hits, folder = answer.stdout.split()
+    hits, folder = starts.python(KERNELS, tree, tree).split()
     return int(hits), folder
 
 

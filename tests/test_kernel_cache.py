@@ -11,6 +11,7 @@ import time
 from functools import partial
 
 import pytest
+import starts
 
 from bezierplan.machine import kernel_cache
 
@@ -189,17 +190,8 @@ def test_kernels_of_other_libraries_are_left_alone(tmp_path):
     environment is set.
     """
     (tmp_path / "foreign.py").write_text(FOREIGN)
-    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
     for hits in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", BESIDE],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        assert done.stdout.splitlines()[-1].split() == [
+        assert starts.python(BESIDE, tmp_path, tmp_path).splitlines()[-1].split() == [
             "42",
             str(tmp_path / "__pycache__"),
             hits,
@@ -216,13 +208,4 @@ def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
         "Path('a file')\n"
     )
     code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"
-    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=tmp_path,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout == "42\n"
+    assert starts.python(code, tmp_path, tmp_path) == "42\n"

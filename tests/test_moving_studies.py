@@ -20,6 +20,8 @@ from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 
+pytestmark = pytest.mark.usefixtures("planners_are_read_here")
+
 PLANNER = """
 from typing import Annotated
 
@@ -105,6 +107,13 @@ def driven(tmp_path_factory):
     return study, chunk(study)
 
 
+@pytest.fixture(scope="module")
+def room(driven):
+    """The problem of the drives, and its world."""
+    made, found = worlds.build_all(problems_job(driven[0], "drives", "smoke"), driven[0].folder)
+    return made["across"], found["across"]
+
+
 def test_a_reader_s_planner_drives_by_one_line_of_config(driven):
     runs, times, traces = (table.to_pylist() for table in driven[1])
     assert [run["id"] for run in runs] == [
@@ -149,15 +158,14 @@ def test_a_resume_without_a_state_is_told(tmp_path):
         chunk(reading.load([home])["mystudy"])
 
 
-def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven):
+def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
     study, (runs, *_) = driven
-    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     described = job(study, "drives", "mine", "smoke", 0)
     run = runs.to_pylist()[1]
-    ride, _ = execution.redriven(described, run, made["across"], found["across"])
+    ride, _ = execution.redriven(described, run, *room)
     assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
     with pytest.raises(ValueError, match="its rerun ends in another path"):
-        execution.redriven(described, run | {"repeat": 0}, made["across"], found["across"])
+        execution.redriven(described, run | {"repeat": 0}, *room)
 
 
 def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
@@ -169,8 +177,8 @@ def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
     assert steps == [round(moment * end) for moment in replay.MOMENTS]
 
 
-def test_files_of_problems_keep_the_world(tmp_path):
-    study = reading.load([written(tmp_path)])["mystudy"]
+def test_files_of_problems_keep_the_world(driven, tmp_path):
+    study, _ = driven
     described = problems_job(study, "drives", "smoke")
     made, found = worlds.build_all(described, study.folder)
     file = str(tmp_path / "drives.parquet")
@@ -234,14 +242,12 @@ def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
 
 
 @pytest.mark.parametrize(("end", "feasible"), [((6.5, 2.5), True), ((6.0, 2.5), False)])
-def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_path, end, feasible):
-    study = reading.load([written(tmp_path)])["mystudy"]
-    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, end, feasible):
     around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = rides.judged(ride, True, made["across"], found["across"])
+    row, _ = rides.judged(ride, True, *room)
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -250,31 +256,23 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
     [([0.2, 0.0, -1e-10], 0.0, 0), ([0.2, -0.3, -0.1], 0.0, 2), ([0.2, 0.1, 0.4], 0.1, 0)],
 )
 def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
-    tmp_path, monkeypatch, clearance, least, steps
+    room, monkeypatch, clearance, least, steps
 ):
-    study = reading.load([written(tmp_path)])["mystudy"]
-    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
     ride = Ride(
         Motion(points, np.arange(4.0)), True, 0.0, [DrivePlan(0.0, None, 10.0, 0.0, 0.0, 1)]
     )
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.judged(ride, True, made["across"], found["across"])
+    row, _ = rides.judged(ride, True, *room)
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
-def a_row(tmp_path, points, times, arrived=True):
+def a_row(room, points, times):
     """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
-    study = reading.load([written(tmp_path)])["mystudy"]
-    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
-    ride = Ride(
-        Motion(np.array(points), np.array(times)),
-        arrived,
-        0.0,
-        [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)],
-    )
-    return rides.judged(ride, True, made["across"], found["across"])[0]
+    motion = Motion(np.array(points), np.array(times))
+    ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)])
+    return rides.judged(ride, True, *room)[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.
@@ -293,16 +291,15 @@ THERE = (3.5, 2.5)
         ([(0.5, 2.5), THERE, THERE], [0.0, 2.0, 9.0], True),
     ],
 )
-def test_a_robot_that_is_hit_was_standing_or_driving_before(points, times, stands, tmp_path):
-    row = a_row(tmp_path, points, times)
+def test_a_robot_that_is_hit_was_standing_or_driving_before(points, times, stands, room):
+    row = a_row(room, points, times)
     assert row["collision_at"] == pytest.approx(2.5)
     assert row["hit_waiting"] is stands
 
 
-def test_the_least_last_plan_is_that_of_the_map_and_the_place_of_the_last_plan(tmp_path):
-    assert a_row(tmp_path, [(0.5, 2.5), (6.5, 2.5)], [0.0, 6.0])["last_optimum"] == pytest.approx(
-        6.0
-    )
+def test_the_least_last_plan_is_that_of_the_map_and_the_place_of_the_last_plan(room):
+    row = a_row(room, [(0.5, 2.5), (6.5, 2.5)], [0.0, 6.0])
+    assert row["last_optimum"] == pytest.approx(6.0)
 
 
 def drives_of(*rows):

@@ -3,14 +3,12 @@ bit for bit.
 """
 
 import json
-import os
 import pkgutil
-import subprocess
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+import starts
 from studies import study
 
 import bezierplan
@@ -87,27 +85,10 @@ def run_again() -> str:
     return row_text({name: value for name, value in run.to_dict().items() if name != "cpu_s"})
 
 
-def uncompiled(code: str) -> str:
-    """What code prints in a process without compilation."""
-    environment = os.environ | {
-        "NUMBA_DISABLE_JIT": "1",
-        "PYTHONPATH": os.pathsep.join([str(ROOT / "src"), str(ROOT / "tests")]),
-    }
-    ended = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ended.returncode == 0, ended.stderr
-    return ended.stdout
-
-
 def test_the_checker_and_a_run_answer_the_same_without_compilation():
     """In a process that has imported all modules."""
     imports = "import importlib, json, test_uncompiled as own"
     code = "[importlib.import_module(name) for name in own.modules()]"
     code += "; print(json.dumps([own.answers(), own.run_again()]))"
-    assert json.loads(uncompiled(f"{imports}; {code}")) == [answers(), run_again()]
+    said = starts.python(f"{imports}; {code}", ROOT, ROOT / "tests", NUMBA_DISABLE_JIT="1")
+    assert json.loads(said) == [answers(), run_again()]
