@@ -183,6 +183,24 @@ def test_search_is_that_of_a_plain_reference(changes):
     assert found.stop == ("iterations" if len(history) == changes["iterations"] + 1 else "stall")
 
 
+@pytest.mark.parametrize(
+    ("changes", "mean"),
+    [
+        ({}, 10.684),
+        ({"chaotic_term": "cognitive"}, 10.661),
+        ({"chaotic_term": "social"}, 11.342),
+        ({"chaotic_term": "social", "inertia_damping": 0.98, "velocity_limit": 0.1}, 8.61),
+    ],
+    ids=["PSO", "CPSO-I", "CPSO-II", "CPSO-II tuned"],
+)
+def test_means_are_those_of_an_independent_implementation(changes, mean):
+    """Of 2,000 runs there and 500 here; four standard errors of the difference."""
+    ends = [plan(EQUAL, seed, **changes).objective for seed in range(500)]
+    assert np.mean(ends) == pytest.approx(
+        mean, abs=4 * np.std(ends) * math.sqrt(1 / 500 + 1 / 2000)
+    )
+
+
 def test_a_gauss_sequence_from_one_half_moves_the_swarm_once_and_is_recorded():
     changes = {
         "chaotic_term": "social",

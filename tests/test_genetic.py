@@ -6,9 +6,43 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from bezierplan.planners.parts.genetic import (
+    complement_bit,
     flip_bit,
     redraw_gene,
+    roulette,
+    swap_tails,
 )
+
+BITS = 8
+chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(
+    lambda genes: np.array(genes, dtype=np.int64)
+)
+
+
+def bits_of(chromosome):
+    return "".join(f"{gene:08b}" for gene in chromosome)
+
+
+@given(chromosomes, chromosomes, st.integers(1, 6 * BITS - 1))
+def test_crossover_swaps_exactly_the_bits_behind_the_cut(one, other, cut):
+    a, b = bits_of(one), bits_of(other)
+    swap_tails(one, other, cut, BITS)
+    assert bits_of(one) == a[:cut] + b[cut:]
+    assert bits_of(other) == b[:cut] + a[cut:]
+
+
+@given(chromosomes, st.integers(0, 6 * BITS - 1))
+def test_mutation_complements_exactly_one_bit(chromosome, position):
+    before = bits_of(chromosome)
+    complement_bit(chromosome, position, BITS)
+    after = bits_of(chromosome)
+    assert [i for i in range(len(before)) if before[i] != after[i]] == [position]
+
+
+def test_roulette_draws_in_proportion_to_fitness():
+    fitness = np.array([1.0, 2.0, 3.0, 4.0])
+    drawn = roulette(np.random.default_rng(0), fitness, 100_000)
+    assert stats.chisquare(np.bincount(drawn), 100_000 * fitness / fitness.sum()).pvalue > 1e-3
 
 
 def test_redrawn_genes_are_uniform_over_genes_and_alleles():
