@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 from bezierplan.__main__ import main
-from bezierplan.running.guard import interface, process
 from bezierplan.schema import checked
 from bezierplan.study import reading
+
+pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
 DATA, STUDIES = Path(__file__).parent / "data", Path(__file__).parents[1] / "config" / "studies"
 FILE = checked.read(DATA / "faults.yaml")
@@ -24,14 +25,6 @@ SENTENCE = """
 sentences: [{{text: "{}", values: {{a: {{of: numbers, column: value_ours}}}}, holds: ["{}"]}}]
 table: {{of: numbers, columns: {{method: method}}}}
 """
-
-
-@pytest.fixture(autouse=True)
-def planners_are_read_here(monkeypatch):
-    """Without a process of their own first, which takes a second each; `test_guard` has those."""
-    monkeypatch.setattr(
-        process, "answers", lambda work, given, *_: interface.described(str, **given)
-    )
 
 
 def copy(study, folder):
