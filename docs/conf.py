@@ -6,7 +6,10 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent / "src"), str(HERE)]
 
+import content  # noqa: E402
+
 import bezierplan  # noqa: E402
+from bezierplan.figures.page import build  # noqa: E402
 
 project = "bezierplan"
 author = copyright = "The bezierplan authors"
@@ -21,7 +24,7 @@ extensions = [
     "sphinx.ext.doctest",
     "sphinx.ext.viewcode",
 ]
-exclude_patterns = ["outcome/*.md", "prose", "python.md", "*.in.md"]
+exclude_patterns = ["outcome/*.md", "prose", "python.md", "verdict-changes.md", "*.in.md"]
 suppress_warnings = ["myst.header"]
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 3
@@ -39,12 +42,17 @@ html_theme_options = {
     "navigation_with_keys": False,
     "show_prev_next": False,
     "secondary_sidebar_items": ["page-toc"],
-    "footer_start": ["copyright"],
-    "footer_end": ["sphinx-version"],
+    "footer_start": ["made"],
+    "footer_end": [],
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
-html_context = {"default_mode": "auto"}
+html_context = {
+    "default_mode": "auto",
+    "made_by": build.made_by(),
+    "licence": content.citations()[0]["license"],
+}
+templates_path = ["templates"]
 # Pages without pages below them.
 html_sidebars = {
     name: []

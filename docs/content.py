@@ -14,6 +14,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
+from bezierplan.analysis import study_code
 from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader
@@ -23,6 +24,14 @@ from bezierplan.study import page as page_jobs
 ROOT = Path(__file__).parents[1]
 OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
+PICTURES = {
+    "song2016": "figure3",
+    "elhoseny2017": "figure10",
+    "ma2020": "figure4",
+    "tharwat2018": "figure15",
+    "meledje": "figure4",
+}
+"""The figure of each paper that shows what it is about."""
 
 
 def results() -> tuple[str, Path]:
@@ -36,12 +45,14 @@ def results() -> tuple[str, Path]:
 def content() -> tuple[SimpleNamespace, Path]:
     """What `build.page` gives for the results that there are, and their folder. Added to a study:
     name, as people search for it; definition; data, of the viewer; outcome, its row of the
-    headline. Raises Fault.
+    headline; picture, one of its figures. Raises Fault.
     """
     scale, folder = results()
     with contextlib.chdir(ROOT):
         studies = studies_of()
-        job = page_jobs.page(studies, scale).page
+        whole = page_jobs.page(studies, scale)
+        study_code.functions(whole.code)  # what a study's metrics mean
+        job = whole.page
         shown = {key: own._replace(experiments={}) for key, own in job.studies.items()}
         page = build.page(
             job._replace(studies=shown),
@@ -50,7 +61,7 @@ def content() -> tuple[SimpleNamespace, Path]:
             evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
         )
         tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
-        files = {key: study.verdict_file() for key, study in studies.items()}
+        files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
         following = outcome.following(OUTCOME, files, *tables)
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
@@ -58,6 +69,7 @@ def content() -> tuple[SimpleNamespace, Path]:
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
         study.outcome = page.headline.papers.loc[key]
+        study.picture = next(each for each in study.figures if each["name"] == PICTURES[key])
     return page, folder
 
 

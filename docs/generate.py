@@ -25,7 +25,6 @@ from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings
-from bezierplan.study.alternatives import default_of
 
 HERE = Path(__file__).parent
 MOST_NAMED = 4
@@ -84,8 +83,9 @@ def write(folder: Path) -> None:
             for file in content.OUTCOME.glob("*_readings.csv")
         },
         "table": table,
+        "named_rows": named_rows,
         "about": content.about,
-        "first_sentence": outcome.first_sentence,
+        "sentences": outcome.sentences,
         "origin_of_maps": origin_of_maps,
         # Files of results, and no links to methods within a page.
         "root": "../results/",
@@ -112,6 +112,12 @@ def table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     lines += ["| " + " | ".join(escaped(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
+
+
+def named_rows(shown: pd.DataFrame) -> list[list[str]]:
+    """Rows of the headline's tables, each with a link to the page of its paper first."""
+    link = "[{}](papers/{}.md)"
+    return [[link.format(content.name_of(key), key), *row] for key, *row in shown.itertuples()]
 
 
 def escaped(value: Any) -> str:
@@ -180,9 +186,9 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
         ],
         open=of_users(
             lambda study, methods: [
-                (entry, in_words(default_of(study.definition, entry)))
-                for entry in study.definition.assumptions
-                if entry.setting in accepted and methods & set(entry.methods or methods)
+                row
+                for row in study.assumptions
+                if row["setting"] in accepted and methods & set(row["methods"] or methods)
             ]
         ),
         achieved=of_users(
@@ -229,7 +235,8 @@ def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
     for method in methods:
         resolved = study.definition.resolved(method)
         if setting in resolved:
-            given.setdefault(in_words(resolved[setting]), []).append(method)
+            label = study.job.labels.get(method, in_words(method))
+            given.setdefault(in_words(resolved[setting]), []).append(label)
     values = ", ".join(
         value
         if len(given) == 1

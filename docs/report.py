@@ -6,25 +6,15 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from types import SimpleNamespace
 
 import content
 
 from bezierplan.analysis.outcome import outcome
-from bezierplan.figures.page import build, reader
+from bezierplan.figures.page import build
 
 # The first is Chromium without windows, which needs half the CPU time of the others.
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 CHROMIUM = next(filter(None, map(shutil.which, BROWSERS)), None)
-
-# What follows for each paper, at a glance.
-FIGURES = {
-    "song2016": "figure3",
-    "elhoseny2017": "figure12",
-    "ma2020": "lengths",
-    "tharwat2018": "figure9",
-    "meledje": "work",
-}
 
 
 def main(file: str) -> None:
@@ -54,15 +44,8 @@ def html() -> str:
         software=software,
         references=references,
         about=content.about,
-        first_sentence=outcome.first_sentence,
-        chosen_figure=chosen_figure,
+        sentences=outcome.sentences,
     )
-
-
-def chosen_figure(study: SimpleNamespace) -> reader.Row:
-    """The figure that shows what follows for a paper, if there is it, else the first."""
-    there = {figure["name"]: figure for figure in study.figures}
-    return there.get(FIGURES[study.key], study.figures[0])
 
 
 if __name__ == "__main__":

@@ -83,8 +83,10 @@ CHECK |= {
     "unit": "unit",
     "place": json.dumps({"problem": "p"}),
 }
-WHOLE = {"study": "one", "table": "table1", "place": HOSTILE, "metric": "length", "printed": 10.5}
-WHOLE |= {"quantity": "level", "low95_predicted": 10, "high95_predicted": 11, "in_range": True}
+LEVEL = {"study": "one", "table": "table1", "place": f"problem={HOSTILE}", "metric": "length"}
+LEVEL |= {"quantity": "level", "printed": 10.5, "in_range": True, "why": "a map of ours"}
+ORDER = LEVEL | {"quantity": "order", "printed": -0.5, "in_range": False}
+ORDER |= {"low95_predicted": 0, "high95_predicted": 1}
 CHECK |= {"group": "b", "relation": "lower than", "other": "c", "together": None}
 CHECK |= {"mark": "+", "mark_family": "+", "effect": -1.0}
 CHECK |= {"low95": -2.0, "high95": -0.2, "margin": 0.5, "effect_published": -2.0, "counted": None}
@@ -149,7 +151,7 @@ def page(folder: Path) -> SimpleNamespace:
             table_row=[0, 1, 0], table_column=[0, 0, 1], as_printed="10.51"
         ),
         "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
-        "one/paper/table1.wholes": pd.DataFrame([WHOLE], columns=wholes.COLUMNS),
+        "one/paper/table1.wholes": pd.DataFrame([LEVEL, ORDER], columns=wholes.COLUMNS),
         "one/beyond/more.comparison": numbers,
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),

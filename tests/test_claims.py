@@ -158,7 +158,7 @@ def test_a_superlative_that_fails_by_the_closest_alone_says_against_which_it_hol
     alike = table({"a": sample("a"), "b": sample("a"), "c": sample("c", 2), "d": sample("d", 3)})
     row = judged(check, alike)
     assert row[["verdict", "holds"]].to_list() == ["undecided", "0 of 1"]
-    assert row["where_it_holds"] == "one by one against c and d; undecided in 1 of 3"
+    assert row["where_it_holds"] == "taken singly, against c and d; undecided in 1 of 3"
     third = table({"a": sample("a"), "b": sample("b", -2), "c": sample("c", -2)})
     assert judged(LOWER | {"than": ["b", "c"], "together": True}, third)["where_it_holds"] == ""
 

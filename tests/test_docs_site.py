@@ -15,13 +15,16 @@ from urllib.parse import unquote, urldefrag
 import pandas as pd
 import pytest
 import report
+from bs4 import BeautifulSoup
 from content import OUTCOME
 from playwright.sync_api import expect
 from test_page_browser import browser, needs_browser  # noqa: F401
 
 import bezierplan as bp
+from bezierplan.figures.page import reader
 from bezierplan.places import STUDIES
 from bezierplan.planners import known_planners
+from bezierplan.study import reading
 
 ROOT = Path(__file__).parents[1]
 WIDTHS = [1400, 390]
@@ -78,6 +81,76 @@ def test_verdicts_come_with_examples_on_real_numbers(site):
     interval = numbers[["low95_predicted", "high95_predicted"]].notna().all(axis=1)
     shown = numbers[numbers["counted"] & (numbers["identified"].notna() | interval)]
     assert page.count("The paper prints") == shown["verdict"].nunique() >= 2
+
+
+@pytest.fixture(scope="module")
+def papers(site):
+    """By study, its page."""
+    return {
+        file.parent.name: BeautifulSoup(
+            (site / "papers" / f"{file.parent.name}.html").read_text(encoding="utf-8"),
+            "html.parser",
+        )
+        for file in STUDIES.glob("*/experiments.yaml")
+    }
+
+
+def test_claims_and_captions_have_the_verdicts_of_the_outcome(papers):
+    claims = pd.read_csv(OUTCOME / "claims.csv")
+    for key, page in papers.items():
+        own = claims[claims["primary"] & (claims["study"] == key)]
+        kept = own.set_index("id")["verdict"].to_dict()
+        shown = {each["id"].rpartition("/")[2]: each for each in page.select(".claim")}
+        assert {name: each["data-verdict"] for name, each in shown.items()} == kept
+        links = [link for link in page.select("a[href]") if link.text in kept]
+        assert len(links) > 10
+        assert all(link.find_next("abbr").text == kept[link.text] for link in links)
+
+
+def test_numbers_and_orders_are_those_of_the_outcome(papers):
+    numbers, wholes = (reader.read(OUTCOME / name) for name in ("numbers.csv", "wholes.csv"))
+    numbers["own"] = numbers["verdict"].where(numbers["verdict"] != "identified", "not judged")
+    numbers["own"] = numbers["own"].fillna("not judged")
+    for key, page in papers.items():
+        kept = {
+            (f"{row.value_published:g}", row.own, f"{row.value_ours:.6g}")
+            for row in numbers[numbers["study"] == key].itertuples()
+        }
+        shown = {
+            (printed[2], printed[1], f"{float(cell['data-order'] or 'nan'):.6g}")
+            for cell in page.select(".laid td[title]")
+            if (
+                printed := re.match(r"([a-z ]+)\b.*; published ([0-9.]+)", cell["title"], re.DOTALL)
+            )
+        }
+        assert len(shown) >= 8
+        assert shown <= kept
+        orders = wholes.loc[(wholes["study"] == key) & (wholes["quantity"] == "order"), "printed"]
+        shown = set(re.findall(r"rank correlation with ours (-?[0-9.]+),", page.text))
+        assert shown <= {f"{each:.3g}" for each in orders}
+
+
+def test_pages_have_words_and_no_more_digits_than_are_read(site):
+    studies = reading.load([*STUDIES.iterdir()]).values()
+    keys = {name for study in studies for name in study.methods if "_" in name} | {"None"}
+    faults = {}
+    for file in [*site.glob("*.html"), *site.glob("papers/*"), *site.glob("methods/*")]:
+        page = BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser").select_one("article")
+        if page is None or file.stem in ("api", "names", "changelog", "genindex"):
+            continue
+        # What a program reads.
+        for part in page.select("pre, code, script, math, dl.py, #settings"):
+            part.decompose()
+        found = keys & set(re.findall(r"\w+", page.get_text(" ")))
+        # What papers print, and what their maps are recognised by.
+        for part in page.select(".laid, .printed, #maps"):
+            part.decompose()
+        for part in page.select(".claims, .headline, table"):
+            numbers = re.findall(r"\d+\.\d+", part.get_text(" "))
+            found |= {each for each in numbers if len(each.replace(".", "").lstrip("0")) > 5}
+        if found:
+            faults[file.name] = sorted(found)
+    assert faults == {}
 
 
 class Links(HTMLParser):

@@ -7,7 +7,6 @@ import zlib
 from base64 import b64decode
 from html.parser import HTMLParser
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -18,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
-from page_content import SVG, job, page
+from page_content import HOSTILE, SVG, job, page
 
 from bezierplan.figures.page import addresses, answer, build, charts, reader, runs
 from bezierplan.figures.page.page_job import ExperimentView
@@ -126,7 +125,7 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
         (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
         (["b"], [("10.51", "14.000", second), ("", "", None)]),
     ]
-    assert content.studies["one"].tables[0]["whole"].empty, "few runs judge no column as a whole"
+    assert content.studies["one"].tables[0]["wholes"] == [], "few runs judge no column as a whole"
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
@@ -150,8 +149,10 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.baseline == []
-    (column,) = own.tables[0]["whole"].itertuples()
-    assert column.level == "10.5 (10 to 11)"
+    assert own.tables[0]["wholes"] == [
+        f"length, problem {HOSTILE}: level fits; order reversed (rank correlation with "
+        "ours -0.5, expected 0 to 1). It decides nothing: a map of ours."
+    ]
     alone = reader.studies(job(), folder, None)["one"]
     assert {claim["verdict"] for claim in alone.claims} > {"supported"}
 
@@ -180,29 +181,13 @@ def test_a_scale_says_how_many_runs_it_has_and_where_the_evidence_is():
 def test_what_follows_for_a_paper_stands_at_its_head(text):
     head, _, _ = text.partition('id="page-claims/one"')
     assert ">One fails. &lt;/script&gt;" in head
-    assert '<th scope="col">printed</th></tr></thead><tbody>' in head
-    assert "<td></td><td>4</td>" in head
+    assert '<th scope="col" class="printed">printed</th></tr></thead><tbody>' in head
+    assert '<td></td><td class="printed">4</td>' in head
 
 
 def test_the_page_says_what_to_use_with_a_command_on_a_map_that_exists(text):
     (map_file,) = re.findall(r"bezierplan plan (\S+) --start", text)
     assert (Path(__file__).parents[1] / map_file).is_file()
-
-
-def test_the_smoothest_method_is_often_free():
-    rows = [
-        {"method": name, "feasible": free, "feasible_baseline": 1.0, "curvature": curvature}
-        for name, free, curvature in (
-            ("rare", 0.85, 0.1),
-            ("tight", 1.0, 1.2),
-            ("cornered", 1.0, None),
-            ("smooth", 1.0, 0.5),
-            ("smoother", 1.0, 0.3),
-        )
-    ]
-    study = SimpleNamespace(baseline=rows)
-    (found,) = answer.smoothest({"one": study, "other": SimpleNamespace(baseline=rows[:3])})
-    assert found == (study, rows[-1])
 
 
 # --------------------------------------------------------------------------------------------------

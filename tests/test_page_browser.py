@@ -159,7 +159,7 @@ def test_without_scripts_tables_verdicts_charts_and_figures_are_there(visit, sma
     tab.locator("[id='one/table1'] > summary").click()
     expect(tab.locator("[id='one/table1'] table.sortable")).to_be_visible()
     expect(tab.locator("figure noscript img")).to_have_attribute("src", "one/paper/figure1.svg")
-    for name in ("verdicts", "ratios", "methods"):
+    for name in ("verdicts", "ratios"):
         expect(tab.locator(f"[id='page-chart/{name}'] .scroll > *")).to_be_visible()
     expect(tab.locator(".search")).to_be_hidden()
 
@@ -243,9 +243,8 @@ def test_questions_in_plain_words_find_their_answers_in_one_step(visit, small, s
             expect(hits.first).to_contain_text(answer, timeout=5000)
 
 
-def test_charts_lead_to_numbers_and_methods(visit, small):
+def test_a_chart_leads_to_numbers(visit, small):
     tab = visit(small)
-    expect(tab.locator("[id='page-chart/methods'] circle")).to_have_count(2)
     dots = tab.locator("[id='page-chart/ratios'] a")
     expect(dots).to_have_count(3)
     expect(dots.first.locator("title")).to_contain_text("published 10.51")

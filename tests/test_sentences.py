@@ -109,8 +109,8 @@ SENTENCES = {
         {"effect": None},
         {"direction": "lower"},
         ("mga", "lower than", "ga"),
-        "Case 1: exact arc length (mean) has a value in 0 of 10 runs of mga and in 10 of 10 runs "
-        "of ga; the claim says lower.",
+        "Case 1: without a free path there is no exact arc length (mean), which is there in 0 of "
+        "10 runs of mga and in 10 of 10 runs of ga; the claim says lower.",
     ),
 }
 

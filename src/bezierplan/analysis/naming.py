@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 # Units with a plural; others are abbreviations, such as m.
-_WORDS = ("unit", "cell", "step")
+_WORDS = ("unit", "cell", "step", "generation")
 
 
 def amount(number: str, unit: str) -> str:

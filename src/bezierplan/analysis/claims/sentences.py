@@ -255,7 +255,7 @@ def _effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
         return f"{_quantity(row)} has no value"
     have = " and ".join(f"in {count} runs{group}" for count, group in zip(counts, groups))
     claimed = f"; {_claimed(row, check)}" if check.against and check.direction else ""
-    return f"{_quantity(row)} has a value {have}{claimed}"
+    return f"without a free path there is no {_quantity(row)}, which is there {have}{claimed}"
 
 
 _TEMPLATES = {
@@ -270,7 +270,8 @@ _TEMPLATES = {
 def _quantity(row: Row) -> str:
     """What is measured, with its statistic: `exact arc length (mean)`."""
     statistic = row["statistic"]
-    measured = meaning(row["metric"] or "") or (row["metric"] or "").replace("_", " ")
+    metric = row["metric"] or ""
+    measured = meaning(metric).partition(";")[0] or metric.replace("_", " ")
     return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
 
 
@@ -384,7 +385,7 @@ def where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, st
     if words or not any(each.mark == "+" for each in single):
         return words
     words = told_apart([_in_words(each, single) for each in single], labels)
-    return f"one by one {words}" if words else ""
+    return f"taken singly, {words}" if words else ""
 
 
 def _group(check: ClaimCheck, group: Any) -> Any:

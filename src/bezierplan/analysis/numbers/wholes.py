@@ -42,14 +42,6 @@ COLUMNS = [
 
 REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW, comparison.FITTED}
 
-LEGEND = (
-    "Each column of printed means as a whole, and in brackets where 95 % of experiments of the "
-    "paper's size lie that are drawn from our runs, with the runs of one repeat together where "
-    "methods start alike; out: not among these. Order: the rank correlation with our means. "
-    "Deviations: how many means, less the mean of all, lie outside their intervals, and the chance "
-    "of as large ones together; then without the one that is farthest out."
-)
-
 _EXACT = 1e-9
 """Numbers this near are equal."""
 
@@ -158,21 +150,3 @@ def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:
 def _share(as_far: np.ndarray) -> float:
     """The share of experiments that are as far out, the printed one counted as one of them."""
     return (as_far.sum() + 1) / (len(as_far) + 1)
-
-
-def in_words(whole: pd.DataFrame) -> pd.DataFrame:
-    """Wholes for a reader: a row for each column of a table."""
-    rows: dict[str, dict] = {}
-    for each in whole.astype(object).fillna("").to_dict("records"):
-        words = [each[key] for key in ("study", "table", "metric", "place")]
-        row = rows.setdefault(", ".join(filter(None, words)), {"note": each["why"]})
-        row[each["quantity"]] = _text(each)
-    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("column")
-
-
-def _text(row: dict) -> str:
-    """A quantity beside that of experiments."""
-    if "deviations" in row["quantity"]:
-        return f"{row['printed']:g} of {row['methods']}, p {row['chance']:.2g}"
-    low, high = (f"{row[end]:.3g}" for end in ("low95_predicted", "high95_predicted"))
-    return f"{row['printed']:.3g} ({low} to {high})" + ("" if row["in_range"] else ", out")

@@ -38,6 +38,13 @@ LAID = (
 )
 
 
+MORE = (
+    "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
+    "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
+    "Python](../algorithms/{0}.py), [all claims](claims.csv), [all numbers](numbers.csv)."
+)
+
+
 def write(
     titles: Mapping[str, str],
     verdicts: verdict.Files,
@@ -99,7 +106,8 @@ def paper(
         f"**{headline.word(claims).capitalize()}.** {text.strip()}",
         "## What abstract and conclusion claim",
         table_text(main.rename(columns=heads).set_index("claim")),
-        f"The other claims stand in [claims.csv](claims.csv). {LAID}",
+        MORE.format(folder.name),
+        LAID,
     ]
     for name, (table_title, heads) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
@@ -134,7 +142,7 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
     """
     tables = [pd.read_csv(folder / name) for name in TABLES]
     follow = "\n".join(
-        f"- {titles[key].partition(':')[0]}: {first_sentence(text)}"
+        f"- {titles[key].partition(':')[0]}: {sentences(text)[0]}"
         for key, text in following(folder, verdicts, *tables).items()
     )
     pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
@@ -143,6 +151,6 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
     return f"{overview}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
 
 
-def first_sentence(text: str) -> str:
-    """The first of some sentences: of a paper the README and the site's home have that alone."""
-    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text)[0]
+def sentences(text: str) -> list[str]:
+    """What follows for a paper, sentence by sentence: README and the site's home have the first."""
+    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text.partition("\n\n")[0])

@@ -5,11 +5,7 @@ use on a map of one's own.
 from types import SimpleNamespace
 
 from bezierplan.analysis import words
-from bezierplan.analysis.numbers.baseline_comparison import EQUAL
 from bezierplan.figures.page.reader import Row
-
-OFTEN = 0.9
-"""Share of runs with a free path from which a method is recommended."""
 
 
 def about_scale(scale: str, repeats: list[list[int]], outcome: bool) -> str:
@@ -57,22 +53,3 @@ def failing(study: SimpleNamespace) -> list[Row]:
 def counted(study: SimpleNamespace) -> list[Row]:
     """The numbers of a study that count in the outcome."""
     return [cell for table in study.tables for cell in table["numbers"] if cell["counted"]]
-
-
-def smoothest(studies: dict[str, SimpleNamespace]) -> list[tuple[SimpleNamespace, Row]]:
-    """Of each study, of the methods that are free in at least the share `OFTEN` of their runs and
-    bend less than the baseline, the one whose tightest bend is widest: the study, and its row of
-    the comparison with the baseline.
-    """
-    pairs = []
-    for study in studies.values():
-        smooth = [
-            row
-            for row in study.baseline
-            if row["feasible"] >= OFTEN
-            and row["curvature"] is not None
-            and row["curvature"] < 1 - EQUAL
-        ]
-        if smooth:
-            pairs.append((study, min(smooth, key=lambda row: row["curvature"])))
-    return pairs

@@ -16,7 +16,7 @@ import bezierplan
 from bezierplan import places
 from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
-from bezierplan.analysis.numbers import baseline_comparison, wholes
+from bezierplan.analysis.numbers import baseline_comparison
 from bezierplan.analysis.outcome import headline
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
@@ -66,7 +66,7 @@ def page(
     return SimpleNamespace(
         scale=job.scale,
         about_scale=answer.about_scale(job.scale, repeats, job.outcome),
-        made_by=_made_by(),
+        made_by=made_by(),
         headline=_headline(
             [*evidence[:3]] if evidence else tables,
             {key: own.title for key, own in job.studies.items()},
@@ -115,7 +115,7 @@ def _headline(tables: list | None, titles: dict[str, str]) -> headline.Headline 
     return headline.headline(numbers, claims, measured, names)
 
 
-def _made_by() -> str:
+def made_by() -> str:
     """The version of this package, and of a clone the commit with its date."""
     version = f"bezierplan {bezierplan.__version__}"
     if not (places.TREE / ".git").exists():
@@ -159,6 +159,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "counts": counts,
         "packed": packed,
         "failing": answer.failing,
+        "labelled": labelled,
     }
     environment.globals |= {
         "address": addresses.address,
@@ -170,7 +171,6 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "grid": grid,
         "marks": MARKS,
         "root": "",  # before the paths of files of results
-        "of_columns": wholes.LEGEND,
         "meaning": lambda metric: meaning(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": size,
@@ -198,7 +198,16 @@ def short(value: Any, digits: int = 4) -> str:
     """A value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
-    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+    return baseline_comparison.number(value, digits) if isinstance(value, float) else str(value)
+
+
+def labelled(text: Any, labels: dict[str, str]) -> str:
+    """Text in which the keys of methods and metrics are as printed.
+
+    >>> labelled("the method mga_c of a_study", {"mga_c": "MGA-C"})
+    'the method MGA-C of a_study'
+    """
+    return re.sub(r"\w+_\w+", lambda found: labels.get(found[0], found[0]), str(text))
 
 
 def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:

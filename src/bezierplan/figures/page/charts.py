@@ -3,7 +3,6 @@
 import math
 from itertools import groupby
 from types import SimpleNamespace
-from typing import Any
 
 from bezierplan.figures.page.reader import Row
 
@@ -47,45 +46,6 @@ def ratios(studies: list[SimpleNamespace]) -> list[Row]:
             if dots:
                 rows.append({"study": study, "table": table, "dots": dots})
     return rows
-
-
-def methods(studies: list[SimpleNamespace]) -> dict[str, Any]:
-    """Methods by length (x) and CPU time (r) over the baseline's, and by feasible runs (y), each on
-    an axis from 0 to 100 whose ends stand beside; empty without any.
-    """
-    rows = [
-        (n, study, row)
-        for n, study in enumerate(studies)
-        for row in study.baseline
-        if row["length"] and row["cpu"]
-    ]
-    if not rows:
-        return {}
-    longest = 1.02 * max(row["length"] for _, _, row in rows)
-    shortest = min(1.0, *(row["length"] for _, _, row in rows)) / 1.02
-    least = min(0.9, *(row["feasible"] for _, _, row in rows))
-    times = [row["cpu"] for _, _, row in rows]
-    dots = [
-        {
-            "study": study,
-            "colour": n,
-            "row": row,
-            "x": along(row["length"], shortest, longest),
-            "y": round(100 * (row["feasible"] - least) / (1 - least), 2),
-            "r": along(row["cpu"], min(times), max(times) * 1.01),
-        }
-        for n, study, row in rows
-    ]
-    return {
-        "dots": dots,
-        "least": least,
-        "ticks": [
-            (each, along(each, shortest, longest))
-            for each in (1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
-            if each <= longest
-        ],
-        "baseline": along(1, shortest, longest),
-    }
 
 
 def forests(comparisons: list[Row]) -> list[list[Row]]:

@@ -13,7 +13,7 @@ import pandas as pd
 from bezierplan import planners
 from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
-from bezierplan.analysis.numbers import comparison, wholes
+from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView
@@ -23,6 +23,9 @@ Row = dict[str, Any]
 
 NEAR = 0.1
 """A number of ours this near to the published one, as a share of it, counts as near."""
+
+WHOLE = ("level", "spread", "order")
+"""What is told of a column of means as a whole."""
 
 
 def read(file: str | Path) -> pd.DataFrame:
@@ -91,7 +94,9 @@ def studies(
             tables=own_tables,
             figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
             methods=[_method(key, name, each) for name, each in described.methods.items()],
-            assumptions=[_assumption(key, each) for each in described.assumptions],
+            assumptions=[
+                _assumption(key, each, described.labels) for each in described.assumptions
+            ],
             audit=records(files.get("audit", pd.DataFrame())),
             baseline=with_corners(baseline) if len(baseline) else [],
             gap=gap(own_tables),
@@ -177,10 +182,34 @@ def _table(
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
     # A column is judged as a whole by many runs alone.
-    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else pd.DataFrame()
-    whole = wholes.in_words(columns) if len(columns) else columns
-    laid = _laid(folder / f"{row['stem']}.csv", spec, cells)
-    return row | {"numbers": cells, "laid": laid, "whole": whole}
+    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else None
+    row["wholes"] = [] if columns is None else _wholes(columns, spec, labels)
+    return row | {"numbers": cells, "laid": _laid(folder / f"{row['stem']}.csv", spec, cells)}
+
+
+def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> list[str]:
+    """A sentence on each column of printed means as a whole."""
+    sentences = []
+    for (place, metric), rows in columns.groupby(["place", "metric"], sort=False):
+        head = [_heading(metric, "mean", spec, labels)]
+        for key, value in (part.split("=", 1) for part in place.split(", ")):
+            if value != spec.primary.get(key):
+                head.append(labels.get(value, f"{key} {value}"))
+        whole = records(rows[rows["quantity"].isin(WHOLE)])
+        why = f" It decides nothing: {whole[0]['why']}." if whole[0]["why"] else ""
+        sentences.append(f"{', '.join(head)}: {'; '.join(map(_whole, whole))}.{why}")
+    return sentences
+
+
+def _whole(row: Row) -> str:
+    """Whether a quantity of a column lies where experiments of the paper's size have it."""
+    name, order = row["quantity"], row["quantity"] == "order"
+    if row["in_range"]:
+        return f"{name} fits"
+    word = "reversed" if order and row["printed"] < 0 else "does not fit"
+    low, high = (f"{row[end]:.3g}" for end in ("low95_predicted", "high95_predicted"))
+    what = "rank correlation with ours" if order else "in print"
+    return f"{name} {word} ({what} {row['printed']:.3g}, expected {low} to {high})"
 
 
 def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
@@ -325,9 +354,11 @@ def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str
     return sentences.why(row, checks[row["check"] - 1], labels, bool(claim["own_criterion"]))
 
 
-def _assumption(study: str, row: Row) -> Row:
-    """A detail that the paper leaves open."""
+def _assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
+    """A detail that the paper leaves open; default: one for all, or each with what has it."""
     default = row["default"]
     if isinstance(default, dict):
-        default = ", ".join(f"{name}: {value}" for name, value in default.items())
+        values = {labels.get(name, name): value for name, value in default.items()}
+        one, *others = dict.fromkeys(map(str, values.values()))
+        default = ", ".join(f"{name}: {values[name]}" for name in values) if others else one
     return row | {"address": address(study, row["id"]), "default": default}
