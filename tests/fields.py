@@ -14,7 +14,7 @@ from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
 
 STUDIES = File(__file__).resolve().parents[1] / "config" / "studies"
@@ -55,6 +55,13 @@ def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 10
         {"radius": radius, "clear_ends": 2.0, "unit": "cell"}, described, "test"
     )
     return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+def random_grid(seed: int, shape: tuple[int, int], share: float = 0.3, cell: float = 1.0) -> Grid:
+    """Cells of which a share is occupied, the first and the last one free."""
+    occupied = np.random.default_rng(seed).random(shape) < share
+    occupied[0, 0] = occupied[-1, -1] = False
+    return Grid(occupied, cell, "unit")
 
 
 def assert_path_fits(problem: Problem, found: Plan) -> None:

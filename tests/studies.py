@@ -15,6 +15,7 @@ from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import problems_job
+from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Problem
 
 FOLDER = Path(__file__).parents[1] / "config" / "studies"
@@ -60,6 +61,13 @@ def built(study: Study, experiment: str, name: str) -> Problem:
     home = alone["workspace"]
     described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
     return problems.build_all(described, study.folder)[name]
+
+
+def problem_of(key: str, name: str) -> Problem:
+    """A problem of a study in a workspace that is neither drawn nor moves."""
+    own, described = study(key), study(key).problems[name]
+    home = files.load(own.workspaces[described.workspace].plain(), own.folder)
+    return problems.build(name, described.plain(), home)
 
 
 def planned(key: str, method: str, problem: Problem, seed: int = 0, **changes: Any) -> Plan:

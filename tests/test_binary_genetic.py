@@ -4,7 +4,9 @@ cases, its settings.
 
 import itertools
 import math
+from functools import partial
 
+import fields
 import numpy as np
 import pytest
 from hypothesis import given
@@ -18,6 +20,7 @@ from bezierplan.workspaces.problem import Problem
 
 SETTINGS = study("song2016").resolved("smooth") | {"population": 20, "generations": 10}
 SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
+random_grid = partial(fields.random_grid, shape=(16, 16), cell=10.0)
 OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
 WALL = from_lines(["......#.", "......#.", "......#.", "......#."], 1.0, "unit")
 
@@ -30,12 +33,6 @@ def plan(workspace=OPEN, start=0, target=255, seed=0, **changes):
     return planned(
         "song2016", "smooth", problem(workspace, start, target), seed, **SETTINGS | changes
     )
-
-
-def random_grid(seed):
-    occupied = np.random.default_rng(seed).random((16, 16)) < 0.3
-    occupied[0, 0] = occupied[-1, -1] = False
-    return Grid(occupied, 10.0, "unit")
 
 
 def reference(path, grid, samples):

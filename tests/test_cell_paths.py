@@ -3,7 +3,9 @@ do.
 """
 
 import itertools
+from functools import partial
 
+import fields
 import numpy as np
 import pytest
 from hypothesis import given
@@ -17,13 +19,8 @@ from bezierplan.workspaces.lattice import STEPS, lattice, points
 from bezierplan.workspaces.problem import Path
 
 ROWS, COLUMNS = 7, 9
+random_grid = partial(fields.random_grid, shape=(ROWS, COLUMNS), share=0.25)
 seeds = st.integers(0, 10_000)
-
-
-def random_grid(seed):
-    occupied = np.random.default_rng(seed).random((ROWS, COLUMNS)) < 0.25
-    occupied[0, 0] = occupied[-1, -1] = False
-    return Grid(occupied, 1.0, "unit")
 
 
 def places_of(grid, corners="one"):

@@ -3,34 +3,26 @@ settings are the paper's.
 """
 
 import math
+from functools import partial
 from pathlib import Path as File
 
 import numpy as np
 import pandas as pd
 import pytest
-from studies import drawing
+from studies import drawing, problem_of
 
 from bezierplan.analysis.audit import audit
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.papers.ma2020 import audit as own_audit
 from bezierplan.planners import bca
-from bezierplan.running import problems
 from bezierplan.schema import checked
-from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
 STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
-
-
-def problem(name):
-    described = STUDY["problems"][name]
-    return problems.build(
-        name, described, files.load(STUDY["workspaces"][described["workspace"]], FOLDER)
-    )
-
+problem = partial(problem_of, "ma2020")
 
 MAPS = {
     # occupied cells; shortest path of 8 neighbours, half diagonals at the ends included, by both

@@ -4,6 +4,7 @@ own map by configuration alone.
 
 import itertools
 import math
+from functools import partial
 from pathlib import Path as File
 
 import numpy as np
@@ -11,7 +12,7 @@ import pandas as pd
 import pytest
 from panels import options_of
 from studies import drawing as drawn
-from studies import study
+from studies import problem_of, study
 
 from bezierplan.figures.panels import drawing
 from bezierplan.geometry import shortest_paths
@@ -38,17 +39,12 @@ from bezierplan.workspaces.problem import Path, Problem
 YARD = File(__file__).parent / "data" / "yard"
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
 STUDY = study("meledje")
+problem = partial(problem_of, "meledje")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
 def workspace(name):
     return files.load(STUDY.workspaces[name].plain(), FOLDER)
-
-
-def problem(name):
-    return problems.build(
-        name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace)
-    )
 
 
 def test_maps_change_as_the_paper_says():

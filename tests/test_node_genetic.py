@@ -7,6 +7,7 @@ import math
 from functools import partial
 from pathlib import Path as File
 
+import fields
 import numpy as np
 import pytest
 from hypothesis import given
@@ -46,6 +47,7 @@ OPTIMA = {
 }
 SETTINGS = study("meledje").resolved("proposed")
 plan = partial(planned, "meledje", "proposed", population=20, generations=30)
+random_grid = partial(fields.random_grid, shape=(9, 12))
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
@@ -64,12 +66,6 @@ def problem(grid, start=0, target=None):
 
 
 ENVIRONMENTS = {name: problem(grid_of(name)) for name in OPTIMA}
-
-
-def random_grid(seed, shape=(9, 12), share=0.3):
-    occupied = np.random.default_rng(seed).random(shape) < share
-    occupied[0, 0] = occupied[-1, -1] = False
-    return Grid(occupied, 1.0, "cell")
 
 
 def cells_of(path, grid):
@@ -169,7 +165,7 @@ def test_optimum_of_the_four_maps(name):
 
 @pytest.mark.parametrize("seed", range(8))
 def test_optimum_of_random_maps(seed):
-    grid = random_grid(seed, (6, 7), 0.4)
+    grid = random_grid(seed, shape=(6, 7), share=0.4)
     energy, _ = cheapest(ground_of(grid, 1.0), 0, grid.occupied.size - 1)
     assert energy == pytest.approx(reference_optimum(grid, 0, grid.occupied.size - 1))
 

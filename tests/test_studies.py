@@ -3,13 +3,14 @@ that its files name what exists.
 """
 
 import math
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 from studies import FOLDER as STUDIES
-from studies import KEYS, arguments, drawing
+from studies import KEYS, arguments, drawing, problem_of
 from studies import study as shared
 
 from bezierplan.analysis import metrics
@@ -18,10 +19,8 @@ from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
-from bezierplan.running import problems
 from bezierplan.schema import checked
 from bezierplan.study import alternatives, checks, jobs, reading
-from bezierplan.workspaces import files
 
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 SWARM = {name: value for name, value in THARWAT["settings"].items() if not isinstance(value, dict)}
@@ -29,20 +28,11 @@ SWARM = {name: value for name, value in THARWAT["settings"].items() if not isins
 SAMPLES, BETA = 100, 100.0
 RANKED = ("table3", "table4", "table5", "table6")
 SEQUENCES = arguments("tharwat2018", "chaotic_sequences")
+problem = partial(problem_of, "tharwat2018")
 
 
 def published(study):
     return {file.stem: pd.read_csv(file) for file in (STUDIES / study / "published").glob("*.csv")}
-
-
-def problem(name):
-    """A problem of tharwat2018 in a fixed workspace."""
-    described = THARWAT["problems"][name]
-    return problems.build(
-        name,
-        described,
-        files.load(THARWAT["workspaces"][described["workspace"]], STUDIES / "tharwat2018"),
-    )
 
 
 def faults(rows):
