@@ -1,5 +1,5 @@
-"""Edges or discs by place: a raster of square bins, so that a segment is compared with what is near
-it and not with all.
+"""Edges by place: a raster of square bins, so that a segment is compared with what is near it and
+not with all.
 """
 
 import math
@@ -14,7 +14,7 @@ _LEAST_SIDE = 1e-4
 
 
 class Bins(NamedTuple):
-    """Edges by the bins that they pass through, or discs by those that their bounding boxes touch.
+    """Edges by the bins that they pass through.
 
     low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of
     bins. first: (columns rows + 1,) where the members of each bin, column by column, begin in
@@ -32,37 +32,21 @@ class Bins(NamedTuple):
 def bins_of(edges: np.ndarray) -> Bins:
     """The bins of edges (n, 4), about as many as there are edges."""
     ends = edges.reshape(-1, 2) if len(edges) else np.zeros((1, 2))
-    low, high = ends.min(axis=0), ends.max(axis=0)
-    return _filled(low, high, edges, np.zeros(len(edges)))
-
-
-def bins_of_discs(centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> Bins:
-    """The bins of discs, (n, 2) and (n,), and of all between bounds (4,); about as many as there
-    are discs.
-    """
-    up = np.column_stack([np.zeros(len(radii)), radii])
-    low = np.minimum(bounds[::2], (centres - radii[:, None]).min(axis=0, initial=math.inf))
-    high = np.maximum(bounds[1::2], (centres + radii[:, None]).max(axis=0, initial=-math.inf))
-    return _filled(low, high, np.hstack([centres - up, centres + up]), radii)
-
-
-def _filled(low: np.ndarray, high: np.ndarray, edges: np.ndarray, reach: np.ndarray) -> Bins:
-    """The bins between two corners (2,) of edges (n, 4) that reach (n,) to both sides."""
-    width, height = (high - low).tolist()
+    low = ends.min(axis=0)
+    width, height = (ends.max(axis=0) - low).tolist()
     side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
     empty = np.zeros(0, dtype=np.int64)
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
-    first, members = _sort(edges, reach, bins)
+    first, members = _sort(edges, bins)
     return bins._replace(first=first, members=members)
 
 
 @compiled
-def _sort(edges: np.ndarray, reach: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
+def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """The numbers of the edges of each bin, ascending."""
     places, passing = [0], [0]
     for e in range(len(edges)):
-        left, right = min(edges[e, 0], edges[e, 2]), max(edges[e, 0], edges[e, 2])
-        begin, end = columns_between(left - reach[e], right + reach[e], bins)
+        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
             for number in range(column * bins.rows + low, column * bins.rows + high + 1):

@@ -1,135 +1,215 @@
-"""Shortest paths around circles: the tangent graph, or what of it a shortest path can need."""
+"""Shortest paths around circles: graphs of tangents, of no more circles than are in the way."""
 
+import itertools
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.bins import Bins, bins_of_discs
 from bezierplan.geometry.checker import TOLERANCE, first_collision
+from bezierplan.geometry.checker.hulls import distance_to_segment
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
-from bezierplan.geometry.shortest_paths.tangents import SAME_ANGLE, Scene, circles_beside, search
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import compiled
 from bezierplan.workspaces.problem import Problem
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 # The polyline along arcs is at most this much longer than they are, in units.
 POLYLINE_EXCESS = 1e-6
-
-# What lies within this angle of an arc's ends is counted as part of it.
-_END_OF_ARC = 1e-6
 
 # A polyline around an arc is refined at most this many times to keep clear of a neighbouring
 # circle.
 _REFINEMENTS = 20
 
+# Arcs that overlap by less than this angle count as touching.
+_SAME_ANGLE = 1e-8
 
-def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
-    """The tangent graph: start, target, and the ends of all common tangents, joined by tangents and
-    by the arcs between them.
+# Ways that are longer than the shortest by at most this share are kept: rounding may decide.
+_TIED = 1e-9
 
-    A search finds what of it a shortest path can need, and the rest is left out. But the ends of
-    all tangents cut the arcs, so that the sum of their lengths has the bits of the whole graph.
+# A circle that is farther away from a path, as a share of its length, does not touch it: a way
+# around that circle as well would be longer by more than `_TIED`.
+_BESIDE = 1e-4
+
+
+class _Scene(NamedTuple):
+    """Start and target, as circles without a radius, and circles in the way.
+
+    centres: (n, 2), radii: (n,), start and target first. bounds: (4,) of the border.
     """
-    from scipy.sparse import coo_array
 
-    bins = bins_of_discs(blocked.centres, blocked.radii, blocked.bounds)
-    outer = _is_outer(blocked.centres, blocked.radii, bins)
-    centres = np.concatenate([[problem.start, problem.target], blocked.centres[outer]])
-    radii = np.concatenate([np.zeros(2), blocked.radii[outer]])
-    scene = Scene(centres, radii, blocked.bounds, bins_of_discs(centres, radii, blocked.bounds))
-    tangents, ways = search(scene)
-    if not len(tangents):
-        return no_path()
-    nodes = _nodes(np.unique(tangents[:, [0, 2]]), scene)
-    pairs = _pairs(tangents, nodes, scene)
-    arcs, angles = _free_arcs(nodes, ways, scene)
-
-    # The nodes of the graph, start and target first, and the ends of its edges among them.
-    used, ends = np.unique(np.concatenate([[[0, 1]], pairs, arcs]), return_inverse=True)
-    tail, head = ends.reshape(-1, 2)[1:].T
-    on_circle = nodes.circles[used]
-    points = _points(on_circle, nodes.angles[used], scene)
-    sweep = np.concatenate([np.zeros(len(pairs)), angles])
-    straight = np.hypot(*(points[head[: len(pairs)]] - points[tail[: len(pairs)]]).T)
-    length = np.concatenate([straight, radii[on_circle[tail[len(pairs) :]]] * angles])
-    kept = _shortest_between(tail, head, length)
-    tail, head, sweep, length = tail[kept], head[kept], sweep[kept], length[kept]
-    graph = coo_array(
-        (np.maximum(length, NO_LENGTH), (tail, head)), shape=(len(points), len(points))
-    ).tocsr()
-    _, path = dijkstra_path(graph, 0, 1)
-
-    edge_of = {pair: edge for edge, pair in enumerate(zip(tail.tolist(), head.tolist()))}
-    steps = list(zip(path[:-1].tolist(), path[1:].tolist()))
-    taken = [edge_of.get((a, b), edge_of.get((b, a))) for a, b in steps]
-    # An arc is stored counterclockwise.
-    sweeps = [
-        sweep[edge] if tail[edge] == a else -sweep[edge] for edge, (a, _) in zip(taken, steps)
-    ]
-    return Bound(
-        math.fsum(length[taken]),
-        _circumscribed(points[path], on_circle[path], sweeps, scene, blocked, bins),
-    )
-
-
-@compiled
-def _is_outer(centres: np.ndarray, radii: np.ndarray, bins: Bins) -> np.ndarray:
-    """Which circles do not lie inside another; of equal circles only the first: bool (n,)."""
-    outer = np.ones(len(radii), dtype=np.bool_)
-    for i in range(len(radii)):
-        column = int((centres[i, 0] - bins.low[0]) // bins.side)
-        row = int((centres[i, 1] - bins.low[1]) // bins.side)
-        place = column * bins.rows + row
-        for j in bins.members[bins.first[place] : bins.first[place + 1]]:
-            distance = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
-            if i != j and distance + radii[i] <= radii[j]:
-                outer[i] &= distance + radii[j] <= radii[i] and i < j
-    return outer
+    centres: np.ndarray
+    radii: np.ndarray
+    bounds: np.ndarray
 
 
 class _Nodes(NamedTuple):
-    """Start, target, and the ends of all tangents at some circles, each with a name.
+    """Start, target, and ends of tangents.
 
     circles: (n,) the circle of the scene that a node lies on. angles: (n,) its angle there. names:
-    (n,) ascending numbers.
+    (n,) ascending numbers. points: (n, 2).
     """
 
     circles: np.ndarray
     angles: np.ndarray
     names: np.ndarray
+    points: np.ndarray
 
 
-def _nodes(circles: np.ndarray, scene: Scene) -> _Nodes:
-    """The nodes at some circles (m,), ascending; the first two are start and target."""
-    parts = []
-    for circle in circles[circles > 1].tolist():
-        # Python's own `hypot` is a last bit more exact than that of kernels.
-        step = (scene.centres - scene.centres[circle]).T.tolist()
-        parts.append(_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
-    angles = np.concatenate([[0.0, 0.0], *(part[0] for part in parts)])
-    names = np.concatenate([[0, 1], *(part[1] for part in parts)])
-    circles = names // (4 * len(scene.radii))
-    circles[1] = 1
-    return _Nodes(circles, angles, names)
+class _Graph(NamedTuple):
+    """Nodes, and the free tangents and arcs between them.
 
-
-@allocation_free
-def _name(circle: int, other: int, crossing: bool, side: int, count: int) -> int:
-    """The name of a node at one of `count` circles: the end of a tangent to another, or to an end,
-    that is `crossing` the line between their centres or not, and on one side of it (1 or -1).
+    ends: (e, 2) nodes; that of an arc lead counterclockwise. sweeps: (e,) angles of arcs, 0 of
+    tangents. lengths: (e,).
     """
-    return ((circle * count + other) * 2 + int(crossing)) * 2 + int(side > 0)
+
+    nodes: _Nodes
+    ends: np.ndarray
+    sweeps: np.ndarray
+    lengths: np.ndarray
+
+
+def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
+    """The shortest path among some of the circles is the shortest among all if it is clear of the
+    others. So the search begins without circles and adds those that the path meets, until there are
+    no more.
+
+    But the ends of all tangents cut the arcs, so that the sum of their lengths has the bits of the
+    graph of all circles.
+    """
+    outer = _is_outer(blocked.centres, blocked.radii)
+    scene = _Scene(
+        np.concatenate([[problem.start, problem.target], blocked.centres[outer]]),
+        np.concatenate([np.zeros(2), blocked.radii[outer]]),
+        blocked.bounds,
+    )
+    known = np.arange(2)
+    while True:
+        among = scene._replace(centres=scene.centres[known], radii=scene.radii[known])
+        graph = _graph(np.arange(2, len(known)), among, whole=False)
+        length, tied = _tied(graph)
+        if math.isinf(length):
+            return no_path()
+        tail, head = graph.ends[tied].T
+        # An arc lies within its own height of its chord.
+        height = among.radii[graph.nodes.circles[tail]] * (1 - np.cos(0.5 * graph.sweeps[tied]))
+        points = graph.nodes.points
+        gaps = _gaps(points[tail], points[head], height + _BESIDE * length, scene)
+        gaps[known] = math.inf
+        met = np.count_nonzero(gaps <= 0)
+        if met == 0:
+            break
+        # As many of the nearest come along as are known: a wall of circles is not met one by one.
+        known = np.union1d(known, np.argsort(gaps)[: max(met, len(known))])
+    passed = known[np.unique(graph.nodes.circles[graph.ends[tied]])]
+    return _shortest(_graph(passed[passed > 1], scene, whole=True), scene, blocked)
+
+
+def _shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
+    """The shortest path from node 0 to node 1."""
+    _, path = dijkstra_path(_matrix(graph), 0, 1)
+    near = np.flatnonzero(np.isin(graph.ends, path).all(axis=1))
+    edge_of = {tuple(ends): edge for edge, ends in zip(near, graph.ends[near].tolist())}
+    taken, sweeps = [], []
+    for a, b in itertools.pairwise(path.tolist()):
+        forth = (a, b) in edge_of
+        edge = edge_of[(a, b) if forth else (b, a)]
+        taken.append(edge)
+        sweeps.append(graph.sweeps[edge] if forth else -graph.sweeps[edge])
+    on_circle = graph.nodes.circles[path]
+    return Bound(
+        math.fsum(graph.lengths[taken]),
+        _circumscribed(graph.nodes.points[path], on_circle, sweeps, scene, blocked),
+    )
+
+
+def _graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
+    """The free tangents and arcs of some circles (m,) of a scene, ascending.
+
+    whole: cut the arcs at the ends of all their tangents, and not only of the free ones.
+    """
+    nodes = _nodes(circles, scene)
+    tangents = _tangents(nodes, len(scene.radii))
+    begin, end = nodes.points[tangents].transpose(1, 0, 2)
+    tangents = tangents[_are_free(begin, end, scene)]
+    if not whole:
+        used = np.union1d([0, 1], tangents)
+        nodes = _Nodes(*(column[used] for column in nodes))
+        tangents = np.searchsorted(used, tangents)
+    arcs, sweeps = _free_arcs(nodes, scene)
+    ends = np.concatenate([tangents, arcs])
+    straight = np.hypot(*(nodes.points[tangents[:, 1]] - nodes.points[tangents[:, 0]]).T)
+    lengths = np.concatenate([straight, scene.radii[nodes.circles[arcs[:, 0]]] * sweeps])
+    kept = _shortest_between(ends, lengths)
+    sweeps = np.concatenate([np.zeros(len(tangents)), sweeps])
+    return _Graph(nodes, ends[kept], sweeps[kept], lengths[kept])
+
+
+def _tied(graph: _Graph) -> tuple[float, np.ndarray]:
+    """The length of the shortest way from node 0 to node 1, and which edges are part of it or of
+    one that is as long but for `_TIED`: bool (e,).
+    """
+    from scipy.sparse.csgraph import dijkstra
+
+    from_start, from_target = dijkstra(_matrix(graph), directed=False, indices=[0, 1])
+    tail, head = graph.ends.T
+    through = graph.lengths + np.minimum(
+        from_start[tail] + from_target[head], from_start[head] + from_target[tail]
+    )
+    return from_start[1], through <= from_start[1] * (1 + _TIED)
+
+
+def _matrix(graph: _Graph) -> "csr_array":
+    """The lengths of edges by their ends."""
+    from scipy.sparse import coo_array
+
+    count = len(graph.nodes.names)
+    lengths = np.maximum(graph.lengths, NO_LENGTH)
+    return coo_array((lengths, tuple(graph.ends.T)), shape=(count, count)).tocsr()
 
 
 @compiled
-def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The ends of all tangents at a circle: angles (n,) and names (n,). distances: of all
-    circles' centres, (m,).
+def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """Which circles do not lie inside another; of equal circles only the first: bool (n,)."""
+    outer = np.ones(len(radii), dtype=np.bool_)
+    for i in range(len(radii)):
+        for j in range(len(radii)):
+            if i == j or radii[i] > radii[j]:
+                continue
+            distance = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            if distance + radii[i] <= radii[j]:
+                outer[i] &= distance + radii[j] <= radii[i] and i < j
+    return outer
+
+
+def _nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
+    """Start, target, and the ends of all tangents at some circles (m,), ascending."""
+    parts = [(np.zeros(2), np.arange(2), scene.centres[:2])]
+    for circle in circles.tolist():
+        # Python's own `hypot` is a last bit more exact than that of kernels.
+        step = (scene.centres - scene.centres[circle]).T.tolist()
+        parts.append(_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
+    angles, names, points = map(np.concatenate, zip(*parts))
+    on_circle = names // (4 * len(scene.radii))
+    on_circle[1] = 1
+    return _Nodes(on_circle, angles, names, points)
+
+
+@compiled
+def _nodes_at(
+    circle: int, distances: np.ndarray, scene: _Scene
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
+
+    distances: (m,) of the circles' centres. A name tells the circle, the other one or the end to
+    which the tangent leads, whether it crosses the line between their centres, and its side of it.
     """
     centres, radii = scene.centres, scene.radii
     count = 0
     angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), dtype=np.int64)
+    points = np.empty((4 * len(radii), 2))
     for neighbour in range(len(radii)):
         if neighbour == circle:
             continue
@@ -156,83 +236,98 @@ def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndar
             for side in range(-1, 2, 2):
                 if neighbour < 2 and half == 0.0 and side < 0:
                     continue
-                angles[count] = towards + side * half + opposite
-                names[count] = _name(circle, neighbour, crossing == 1, side, len(radii))
+                angle = towards + side * half + opposite
+                angles[count] = angle
+                names[count] = 4 * (circle * len(radii) + neighbour) + 2 * crossing + (side > 0)
+                points[count, 0] = centres[circle, 0] + radii[circle] * math.cos(angle)
+                points[count, 1] = centres[circle, 1] + radii[circle] * math.sin(angle)
                 count += 1
-    return angles[:count], names[:count]
+    return angles[:count], names[:count], points[:count]
+
+
+def _tangents(nodes: _Nodes, count: int) -> np.ndarray:
+    """The pairs of nodes that a tangent joins, free or not, among so many circles: (t, 2)."""
+    other, kind = nodes.names // 4 % count, nodes.names % 4
+    name = np.where(other < 2, other, 4 * (other * count + nodes.circles) + kind)
+    number = np.arange(len(name))
+    found = np.minimum(np.searchsorted(nodes.names, name), number)
+    # Start and target are joined too: the name of target's node leads to start.
+    joined = (nodes.names[found] == name) & (found < number)
+    return np.column_stack([found, number])[joined]
 
 
 @compiled
-def _points(circles: np.ndarray, angles: np.ndarray, scene: Scene) -> np.ndarray:
-    """The points (n, 2) at some angles of circles."""
-    points = np.empty((len(circles), 2))
-    for i in range(len(circles)):
-        k = circles[i]
-        points[i, 0] = scene.centres[k, 0] + scene.radii[k] * math.cos(angles[i])
-        points[i, 1] = scene.centres[k, 1] + scene.radii[k] * math.sin(angles[i])
-    return points
-
-
-def _pairs(tangents: np.ndarray, nodes: _Nodes, scene: Scene) -> np.ndarray:
-    """The two nodes that each tangent (t, 4) joins, as `search` gives it: (p, 2)."""
-    names = []
-    for a, sense, b, other_sense in tangents.tolist():
-        crossing = sense != other_sense and min(a, b) > 1
-        # A path leaves a circle to the right of the line to the other centre if it turns left.
-        seen_from = min(a, b) if min(a, b) > 1 else max(a, b)
-        side = -sense if seen_from == a else other_sense
-        names.append(
-            [
-                one if one < 2 else _name(one, other, crossing, side, len(scene.radii))
-                for one, other in sorted([(a, b), (b, a)])
-            ]
+def _are_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
+    """Which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
+    left, right, bottom, top = scene.bounds
+    free = np.empty(len(begin), dtype=np.bool_)
+    for i in range(len(begin)):
+        (ax, ay), (bx, by) = begin[i], end[i]
+        free[i] = (
+            min(ax, bx) >= left - TOLERANCE
+            and max(ax, bx) <= right + TOLERANCE
+            and min(ay, by) >= bottom - TOLERANCE
+            and max(ay, by) <= top + TOLERANCE
         )
-    # An end on a circle has one node there, whichever side was asked for.
-    return np.unique(np.searchsorted(nodes.names, names), axis=0)
+        for k in range(len(scene.radii)):
+            if not free[i]:
+                break
+            x, y = scene.centres[k]
+            free[i] = distance_to_segment(x, y, ax, ay, bx, by) >= scene.radii[k] - TOLERANCE
+    return free
 
 
-def _free_arcs(nodes: _Nodes, ways: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Free arcs between neighbouring nodes of a circle, counterclockwise, that some ways (w, 3)
-    around circles need, as `search` gives them: node pairs (n, 2) and angles (n,).
+@compiled
+def _gaps(begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene) -> np.ndarray:
+    """How far circles lie from segments, from points (n, 2) to points (n, 2), that reach to both
+    sides by a width (n,): (m,), at most 0 where they meet one.
+    """
+    gaps = np.full(len(scene.radii), np.inf)
+    for k in range(len(gaps)):
+        x, y = scene.centres[k]
+        for i in range(len(begin)):
+            (ax, ay), (bx, by) = begin[i], end[i]
+            gap = distance_to_segment(x, y, ax, ay, bx, by) - scene.radii[k] - width[i]
+            gaps[k] = min(gaps[k], gap)
+    return gaps
+
+
+def _free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Free arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2) and
+    angles (n,).
     """
     pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
-    for circle in np.unique(ways[:, 0]).astype(int).tolist():
-        if circle < 2:
-            continue
+    for circle in np.unique(nodes.circles)[2:].tolist():
         first, end = np.searchsorted(nodes.circles, [circle, circle + 1])
         angles = nodes.angles[first:end] % math.tau
         order = np.argsort(angles)
         number, begin = order + first, angles[order]
         sweep = np.diff(begin, append=begin[0] + math.tau)
-        _, way_begin, way_sweep = ways[ways[:, 0] == circle, :, None].transpose(1, 0, 2)
-        needed = ((begin - way_begin + _END_OF_ARC) % math.tau <= way_sweep + 2 * _END_OF_ARC).any(
-            axis=0
-        )
         middle, half = _covered_angles(circle, scene)
-        after = (middle - begin[needed, None]) % math.tau
+        after = (middle - begin[:, None]) % math.tau
         overlap = np.full(after.shape, -math.inf)
         for turn in (-math.tau, 0.0, math.tau):
-            shared = np.minimum(sweep[needed, None], after + turn + half) - np.maximum(
+            shared = np.minimum(sweep[:, None], after + turn + half) - np.maximum(
                 0, after + turn - half
             )
             overlap = np.maximum(overlap, shared)
-        needed[needed] = (overlap <= SAME_ANGLE).all(axis=1)
-        pairs.append(np.column_stack([number, np.roll(number, -1)])[needed])
-        sweeps.append(sweep[needed])
+        free = (overlap <= _SAME_ANGLE).all(axis=1)
+        pairs.append(np.column_stack([number, np.roll(number, -1)])[free])
+        sweeps.append(sweep[free])
     return np.concatenate(pairs), np.concatenate(sweeps)
 
 
-def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) -> np.ndarray:
+def _shortest_between(ends: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """Indices of the edges that are the shortest between their two nodes. Sparse matrices would sum
     duplicate edges.
     """
-    low, high = np.minimum(tail, head), np.maximum(tail, head)
-    order = np.lexsort([length, high, low])
+    low, high = np.sort(ends, axis=1).T
+    order = np.lexsort([lengths, high, low])
     first = (np.diff(low[order], prepend=-1) != 0) | (np.diff(high[order], prepend=-1) != 0)
     return order[first]
 
 
-def _covered_angles(k: int, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+def _covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
     """Parts of a circle in other circles or outside the border: middle and half-width of each."""
     centres, radii = scene.centres, scene.radii
     radius = radii[k]
@@ -263,14 +358,11 @@ def _circumscribed(
     points: np.ndarray,
     circles: np.ndarray,
     sweeps: list[float],
-    scene: Scene,
+    scene: _Scene,
     blocked: CircleRegion,
-    bins: Bins,
 ) -> np.ndarray:
     """The polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs, fine
     enough to be free.
-
-    bins: those of the blocked circles.
     """
     centres, radii = scene.centres, scene.radii
     runs: list[tuple[int, float, int]] = []
@@ -297,9 +389,7 @@ def _circumscribed(
                 )
             polyline.append(points[end : end + 1])
         line = np.concatenate(polyline)
-        near = circles_beside(line, bins, len(blocked.radii))
-        nearby = blocked._replace(centres=blocked.centres[near], radii=blocked.radii[near])
-        if first_collision(np.stack([line[:-1], line[1:]], axis=1), nearby)[0] == math.inf:
+        if first_collision(np.stack([line[:-1], line[1:]], axis=1), blocked)[0] == math.inf:
             break
         step *= 0.5
     return line
