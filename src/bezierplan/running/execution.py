@@ -75,7 +75,7 @@ def told_chunk(chunk: Chunk) -> str:
     return f"run {chunk.name}: planner {chunk.planner}"
 
 
-def made(
+def chunk_replies(
     chunk: Chunk,
     problems: dict[str, Problem],
     tasks: Sequence[worker.Task],
@@ -83,12 +83,12 @@ def made(
     worlds: dict[str, World] | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
-    """`worker.made` of a chunk's planner. Raises PlannerFailure, naming the run."""
+    """`worker.replies` of a chunk's planner. Raises PlannerFailure, naming the run."""
     work = worker.Work(chunk.planner, problems, function, worlds, chunk.policy)
     if is_file(chunk.planner):
-        yield from process.made(work, tasks, again, told_chunk(chunk), chunk.time_limit)
+        yield from process.isolated_replies(work, tasks, again, told_chunk(chunk), chunk.time_limit)
         return
-    yield from worker.made(work, tasks, again, partial(begin, chunk.time_limit))
+    yield from worker.replies(work, tasks, again, partial(begin, chunk.time_limit))
     begin(None, told_chunk(chunk))
 
 
@@ -105,7 +105,7 @@ def run(
     """
     name, tasks = condition.problem, [task(chunk, condition, repeat)]
     worlds = {name: world} if world else None
-    (only,) = made(chunk, {name: problem}, tasks, worlds=worlds, function=function)
+    (only,) = chunk_replies(chunk, {name: problem}, tasks, worlds=worlds, function=function)
     return only.result
 
 
@@ -215,7 +215,8 @@ def rows_again(
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
     judged = _judge(chunk, met, worlds)
     return [
-        judged(*run, each)[0] for run, each in zip(runs, made(chunk, met, tasks, worlds=worlds))
+        judged(*run, each)[0]
+        for run, each in zip(runs, chunk_replies(chunk, met, tasks, worlds=worlds))
     ]
 
 
@@ -257,7 +258,7 @@ def run_chunk(
     # be changed by others.
     again = [task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])]
     warm, done = defaultdict(list), {}
-    for reply in made(chunk, met, tasks, again, moving):
+    for reply in chunk_replies(chunk, met, tasks, again, moving):
         k, repeat = order[reply.number]
         outcome, trace = judged(every[k], repeat, reply)
         if reply.number < 0:

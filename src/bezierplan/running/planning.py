@@ -85,7 +85,7 @@ def planned(
     if file:
         problems = {str(number): part for number, part in enumerate(parts)}
         tasks = [worker.Task(name, each, seed, settings) for each in problems]
-        made = [*process.made(worker.Work(file, problems), tasks, (), name)]
+        made = [*process.isolated_replies(worker.Work(file, problems), tasks, (), name)]
         answers, seconds = [each.result for each in made], sum(each.cpu for each in made)
     else:
         answers, seconds, _ = worker.timed(

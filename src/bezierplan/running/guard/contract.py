@@ -126,8 +126,8 @@ def _findings(
     by_name = {problem.name: problem for problem in problems(module)}
     hashing = 0 if is_file(planner) else None
     try:
-        made = _made(planner, settings, by_name, SEEDS, hashing)
-        again = _made(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
+        made = _replies(planner, settings, by_name, SEEDS, hashing)
+        again = _replies(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
     except PlannerFailure as failure:
         yield ContractFinding("all problems", "plan", False, str(failure))
         return
@@ -151,7 +151,7 @@ def _findings(
     yield ContractFinding("all problems", "random numbers", not fault, fault)
 
 
-def _made(
+def _replies(
     planner: str,
     settings: dict[str, Any],
     by_name: dict[str, Problem],
@@ -165,9 +165,9 @@ def _made(
     tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
     by_problem: dict[str, list[worker.Reply]] = {}
     for reply in (
-        worker.made(work, tasks)
+        worker.replies(work, tasks)
         if hashing is None
-        else process.made(work, tasks, (), name, LIMIT, hashing)
+        else process.isolated_replies(work, tasks, (), name, LIMIT, hashing)
     ):
         task = tasks[reply.number]
         with answer.of(task.name):

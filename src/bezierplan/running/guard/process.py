@@ -38,7 +38,7 @@ _STARTS = 60
 """Seconds that a process of runs has at least to start."""
 
 
-def made(
+def isolated_replies(
     work: worker.Work,
     tasks: Sequence[worker.Task],
     again: Sequence[worker.Task],
@@ -46,12 +46,12 @@ def made(
     limit: float | None = None,
     hashing: int = 0,
 ) -> Iterator[worker.Reply]:
-    """`worker.made` in a process of its own, with plain values; before them that of the last of
+    """`worker.replies` in a process of its own, with plain values; before them that of the last of
     `again` in a process with another seed of `hash`. hashing: that seed. Raises
     PlannerFailure as `answers` does.
     """
     if again:
-        for each in made(work, again[-1:], (), name, limit, hashing + 1):
+        for each in isolated_replies(work, again[-1:], (), name, limit, hashing + 1):
             yield each._replace(number=-1)
     parts = work._asdict() | {
         "planner": str(Path(work.planner).resolve()) if is_file(work.planner) else work.planner,

@@ -128,7 +128,7 @@ class Reply(NamedTuple):
     drew: bool
 
 
-def made(
+def replies(
     work: Work,
     tasks: Sequence[Task],
     again: Sequence[Task] = (),
@@ -212,11 +212,11 @@ def plain_answers(
     tasks: list[list[Any]],
     again: list[list[Any]],
 ) -> Iterator[list[Any]]:
-    """`made` as plain values."""
+    """`replies` as plain values."""
     met, of_tasks = unpacked_problems(problems), [Task(*each) for each in tasks]
     moving = {name: from_json(text) for name, text in worlds.items()}
     work, name = Work(planner, met, function, moving, policy), ""
-    for number, found, *others in made(work, of_tasks, [Task(*each) for each in again], begin):
+    for number, found, *others in replies(work, of_tasks, [Task(*each) for each in again], begin):
         name = of_tasks[number].name
         with answer.of(name):
             found = found if moving or function != "plan" else answer.plain(found)
