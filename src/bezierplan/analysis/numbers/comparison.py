@@ -239,7 +239,8 @@ def _outside_in_all(
     """Whether each number (n,) lies outside under every one of several readings."""
     keys = [*key_columns, "metric", "statistic"]
     outside = by_reading["in_range"].eq(False)
-    found = outside.groupby([by_reading[key] for key in keys]).agg(["all", "size"])
+    places = by_reading.reindex(columns=keys)  # a table without printed numbers has other keys
+    found = outside.groupby([places[key] for key in keys]).agg(["all", "size"])
     always = found.index[found["all"] & (found["size"] > 1)]
     return pd.MultiIndex.from_frame(numbers[keys]).isin(always)
 
