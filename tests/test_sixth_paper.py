@@ -2,6 +2,7 @@
 the package knows none of the five by name.
 """
 
+import contextlib
 import re
 from pathlib import Path
 
@@ -14,19 +15,19 @@ from bezierplan.__main__ import main
 from bezierplan.analysis.claims import kinds
 
 ROOT = Path(__file__).parents[1]
-# Where a paper is the source of a formula, a docstring or an example may name it.
 # Of two layouts, as many as scale smoke has.
 VERDICTS = dict.fromkeys(("C1", "C4", "C5"), "undecided") | {"C6": "untestable"}
 VERDICTS |= dict.fromkeys(("C2", "C3"), "supported")
+# Where a paper is the source of a formula, a docstring or an example may name it.
 EXAMPLES = {"commands/outcome.py"}
 
 
-@pytest.fixture
-def mine(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    main(["new", "mine", "--example"])
-    capsys.readouterr()
-    return tmp_path / "mine"
+@pytest.fixture(scope="module")
+def mine(tmp_path_factory):
+    """The example, in the working folder."""
+    with contextlib.chdir(tmp_path_factory.mktemp("sixth")):
+        main(["new", "mine", "--example"])
+        yield Path.cwd() / "mine"
 
 
 def test_the_engine_names_no_paper():
