@@ -262,37 +262,6 @@ FAULTS = {
         {"evaluations": 20},
         "settings: evaluations: 20; an odd number is needed",
     ),
-    "default value": (
-        "Range(1)]",
-        "Range(1)] = 20",
-        {},
-        "setting evaluations: has a default value",
-    ),
-    "no annotation": (
-        "evaluations: Annotated[int, Range(1)]",
-        "evaluations",
-        {},
-        "setting evaluations: has no annotation",
-    ),
-    "wrong annotation": (
-        "Annotated[int, Range(1)]",
-        "str",
-        {},
-        "setting evaluations: is annotated with str; expected bool, int,",
-    ),
-    "no function": (
-        "def plan(",
-        "def plant(",
-        {},
-        "no function plan; expected plan(problem, rng, *, <settings>)",
-    ),
-    "not Python": ("def plan(", "def plan((", {}, ": SyntaxError: "),
-    "unknown workspace": (
-        "KEPT =",
-        'workspaces = ("gird",)\nKEPT =',
-        {},
-        "workspaces: gird: unknown; did you mean grid?",
-    ),
 }
 
 

@@ -243,11 +243,6 @@ def test_what_a_job_reads_of_runs_is_an_input_with_its_times(results):
         assert all(run.replace(".parquet", ".times.parquet") in files for run in runs)
 
 
-def test_figure_shows_the_own_planner(results):
-    assert {"low"} == set(pd.read_csv(results / "beyond" / "paths.csv")["method"])
-    assert (results / "beyond" / "paths.svg").stat().st_size > 1000
-
-
 def test_numbers_of_all_studies_count_the_study(results):
     numbers = pd.read_csv(results.parent / "numbers.csv")
     groups = numbers.loc[numbers["counted"], "verdict"].map(words.groups("number"))

@@ -209,21 +209,21 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
                 assert comes_near(*along, begin, end, centres, drift, radii, margin, pace) == near
 
 
+# A cell in the middle becomes occupied.
+HIT = tuple(
+    from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."])
+)
+
+
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
-    maps = tuple(
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], ["....", "..#.", "...."])
-    )
     motion = Motion(np.array([[0.5, 1.5], [2.5, 1.5]]), np.array([0.0, 2.0]))
-    back = cells.way_to_start(motion, maps[1], "centre")
+    back = cells.way_to_start(motion, HIT[1], "centre")
     assert back[0].tolist() == [2.5, 1.5]
     assert back[-1].tolist() == [1.5, 1.5]
-    assert cells.way_to_start(motion, maps[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    assert cells.way_to_start(motion, HIT[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
     # A plan may begin anywhere outside the cell.
-    assert cells.way_to_start(motion, maps[1], "position")[-1] == pytest.approx(
-        [2.0, 1.5], abs=0.01
-    )
-    assert cells.way_to_start(motion, maps[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    assert cells.way_to_start(motion, HIT[1], "position")[-1] == pytest.approx([2.0, 1.5], abs=0.01)
+    assert cells.way_to_start(motion, HIT[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
 
 
 def around(problem, state):
@@ -239,12 +239,8 @@ def change_on_the_spot():
     """A robot that drives straight is in the middle of a cell when that becomes occupied, at step
     2, after it drove without a pause.
     """
-    maps = tuple(
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], ["....", "..#.", "...."])
-    )
-    world = ChangingCells(maps, np.array([2.0]), 1.0, 30)
-    return world, Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
+    world = ChangingCells(HIT, np.array([2.0]), 1.0, 30)
+    return world, Problem("across", HIT[0], (0.5, 1.5), (3.5, 1.5))
 
 
 def first_straight(problem, state):

@@ -148,31 +148,6 @@ def tree(put_back):
     return put_back()
 
 
-def test_a_tree_is_put_back_whatever_was_done_to_it(put_back, finished):
-    """A file that is edited without another size or date, new and missing ones, and a folder in the
-    place of a link.
-    """
-    tree = put_back()
-    edited, missing, new = (
-        tree / name for name in ("Snakefile", "results/full/claims.csv", "results/new")
-    )
-    dates = edited.stat()
-    edited.write_text(edited.read_text().swapcase())
-    os.utime(edited, ns=(dates.st_atime_ns, dates.st_mtime_ns))
-    missing.unlink()
-    new.touch()
-    (tree / ".cache").unlink()
-    (tree / ".cache/kernels").mkdir(parents=True)
-    (tree / ".cache/kernels/new").touch()
-    assert put_back() == tree
-    assert edited.read_text() == (finished / "Snakefile").read_text()
-    assert edited.stat().st_mtime_ns == dates.st_mtime_ns
-    assert missing.read_text() == (finished / "results/full/claims.csv").read_text()
-    assert not new.exists()
-    assert (tree / ".cache").is_symlink()
-    assert changes(tree).keys() == changes(finished).keys()
-
-
 def test_nothing_is_left_to_do(tree):
     assert planned(tree) == {}
     assert not list((tree / "results").rglob(".part-*"))
@@ -443,15 +418,7 @@ print(gene_lists.q(np.array([1, 2, 3]), np.array([2, 3, 5]), 10))
 
 def test_edited_kernel_is_never_served_from_an_old_cache(tree):
     def run_once():
-        environment = os.environ | {"PYTHONPATH": str(tree / "src")}
-        return subprocess.run(
-            [sys.executable, "-c", RUN_ONCE],
-            cwd=tree,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
+        return starts.python(RUN_ONCE, tree, tree / "src")
 
     before = run_once()
     assert run_once() == before
@@ -484,15 +451,3 @@ def test_fault_stops_before_any_job_with_one_line(tree):
     assert len(told) == 1
     assert "experiments.yaml: methods: nonsmooth: settings: population: 11" in told[0]
     assert not (tree / "results").exists()
-
-
-def test_every_artefact_is_a_named_target(tree):
-    targets = snakemake(tree, "--list-target-rules").split()
-    assert {
-        "all",
-        "smoke",
-        "extended",
-        "song2016",
-        "song2016_table1",
-        *(f"song2016_figure{n}" for n in range(1, 6)),
-    } <= set(targets)
