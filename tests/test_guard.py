@@ -12,23 +12,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from chunks import BENDS, DISC
 
 from bezierplan.analysis.run_tables import row_text
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
-from bezierplan.running.chunk import Chunk
 from bezierplan.running.guard import interface, process, worker
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema import checked
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.problem import Problem
 
-PROBLEM = Problem(
-    "disc",
-    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
-    (1.0, 5.0),
-    (9.0, 5.0),
-)
 PLANNER = """
 import ctypes, multiprocessing, os, subprocess, sys, time
 import numpy as np
@@ -48,23 +40,11 @@ def track(problem, rng, *, bend: float):
 """
 
 
-def chunk(folder, work="", **changed):
+def chunk(folder, work=""):
     file = folder / "bend.py"
     file.write_text(PLANNER.replace("WORK", work or "pass"))
-    given = Chunk(
-        study="study",
-        experiment="bends",
-        method="bend",
-        planner=str(file),
-        settings={"bend": 1.0},
-        problems={"disc": {"workspace": "field"}},
-        vary={},
-        presets={},
-        seeds="own",
-        repeats=[0, 2],
-        time_limit=3.0,
-    )
-    return given._replace(**changed)
+    settings = {"bend": 1.0}
+    return BENDS._replace(planner=str(file), settings=settings, time_limit=3.0)
 
 
 DEEDS = {
@@ -84,10 +64,12 @@ DEEDS = {
 
 
 @pytest.mark.parametrize("deed", DEEDS)
-def test_what_a_planner_does_is_told_in_one_short_line_that_names_the_run(deed, tmp_path):
+def test_what_a_planner_does_is_told_in_one_short_line_that_names_the_run(
+    deed, tmp_path, planners_are_read_here
+):
     given = chunk(tmp_path, deed)
     with pytest.raises(watchdog.PlannerFailure) as told:
-        execution.run(given, given.conditions()[0], 0, PROBLEM)
+        execution.run(given, given.conditions()[0], 0, DISC)
     line = str(told.value)
     assert line.startswith("run study/bends/disc/bend/0: ")
     said = re.sub(r"line \d+ of \w+\.py: ", "", line)
@@ -107,20 +89,20 @@ def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeyp
         "with multiprocessing.get_context('fork').Pool(1) as pool:\n        pool.map(abs, [1])\n"
         "    pool.join()\n    print('a' * 10**6)",
     )
-    runs, times = execution.run_chunk({"disc": PROBLEM}, guarded)
+    runs, times = execution.run_chunk({"disc": DISC}, guarded)
     assert min(times["cpu_s"].to_pylist()) > 0
     assert "aaa... (" in caplog.text
     # A process for each of two seeds of `hash`.
     assert len(caplog.text) < 3 * process.MOST_PRINTED
     monkeypatch.setattr(worker, "planner_module", lambda planner: here)
     monkeypatch.setattr(execution, "is_file", lambda planner: False)
-    again, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    again, _ = execution.run_chunk({"disc": DISC}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
 
 
 def test_a_track_comes_from_the_same_process(tmp_path):
     given = chunk(tmp_path)
-    run = given, given.conditions()[0], 1, PROBLEM
+    run = given, given.conditions()[0], 1, DISC
     (points,) = execution.run(*run, function="track")
     assert np.array_equal(points, execution.run(*run).path.points)
 

@@ -1,6 +1,5 @@
 """Planners of a reader's own, with modules of the reader's own beside them."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -12,7 +11,6 @@ import pytest
 from bezierplan import __main__
 from bezierplan.planners import planner_module
 
-ROOT = Path(__file__).parents[1]
 PLANNER = """
 import json
 
@@ -146,11 +144,10 @@ def test_a_planner_s_file_hides_no_library(tmp_path):
     assert json.dumps([1]) == "[1]"
 
 
-def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path):
+def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path, monkeypatch):
     """And its jobs, though only the command is interrupted."""
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
-    command = [sys.executable, "-m", "bezierplan"]
-    subprocess.run([*command, "new", "mine"], cwd=tmp_path, env=environment, check=True)
+    monkeypatch.chdir(tmp_path)
+    __main__.main(["new", "mine"])
     slow = f"    from pathlib import Path\n    import time\n    Path({str(tmp_path / 'begun')!r})"
     planner = tmp_path / "mine" / "walk.py"
     lines = planner.read_text().splitlines()
@@ -158,9 +155,7 @@ def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path):
     lines[after:after] = [f"{slow}.touch()", "    time.sleep(600)"]
     planner.write_text("\n".join(lines))
     workflow = subprocess.Popen(
-        [*command, "run", "mine", "--cores", "1"],
-        cwd=tmp_path,
-        env=environment,
+        [sys.executable, "-m", "bezierplan", "run", "mine", "--cores", "1"],
         # A shell's job in the background would leave it ignored.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         stdout=subprocess.PIPE,
