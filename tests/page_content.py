@@ -11,12 +11,10 @@ from pivots import pivot_of
 from bezierplan.analysis.numbers import wholes
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
-    Citation,
-    FigureView,
+    ArtefactView,
     MethodView,
     PageJob,
     StudyView,
-    TableView,
 )
 
 HOSTILE = '</script><script>window.broken = 1</script><img src=x onerror="window.broken = 1">'
@@ -100,13 +98,13 @@ OPEN_DETAIL |= {"reason": "it fits", "source": "inferred", "setting": "genes"}
 
 
 def job() -> PageJob:
-    """A study `one` with three claims, four numbers, three tables, a figure, an open choice."""
+    """A study `one` with three claims, four numbers, three tables, a figure, an assumption."""
     values = [{"metric": metric, "statistic": "mean"} for metric in ("length", "objective")]
     table = pivot_of({"index": ["method"], "values": values, "published": "table1.csv"})
     claims = ("C1", "C2", "C3")
     study = StudyView(
         title=HOSTILE,
-        paper=Citation(HOSTILE, "A journal, 2000", "10.1/x"),
+        paper=SimpleNamespace(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
         methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
         claims={
@@ -119,11 +117,11 @@ def job() -> PageJob:
         },
         repeats=[2, 3],
         tables={
-            "table1": TableView(HOSTILE, "Ten runs", table, HOSTILE),
-            "more": TableView("more", "Ten runs", table.but(extends="table1")),
-            "listed": TableView("a list", "", SimpleNamespace()),
+            "table1": ArtefactView(HOSTILE, "Ten runs", HOSTILE, table),
+            "more": ArtefactView("more", "Ten runs", "", table.but(extends="table1")),
+            "listed": ArtefactView("a list", "", "", SimpleNamespace()),
         },
-        figures={"figure1": FigureView("Lengths", HOSTILE, HOSTILE)},
+        figures={"figure1": ArtefactView("Lengths", HOSTILE, HOSTILE)},
         assumptions=[OPEN_DETAIL],
         files=["claims", "checks", "audit"],
         experiments={},

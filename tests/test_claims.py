@@ -199,6 +199,7 @@ def test_a_sentence_follows_from_a_row_alone(tmp_path):
         f"{row['group']} is {abs(row['effect']):g} {row['unit']} {row['relation']} {row['other']}"
         == ("a is 1 m lower than b")
     )
+    assert row["scale"] == "absolute"
     assert row["low95"] < row["effect"] < row["high95"]
     assert (row["metric"], row["n"], row["mark"]) == ("objective", UNITS, "+")
 

@@ -89,8 +89,8 @@ def test_first_value_of_a_variant_is_what_the_checks_name(key):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_the_interpretation_in_force_decides(key):
-    """Methods that are another interpretation of a published one are in variants alone, and in
-    findings, which may compare interpretations.
+    """Methods that are another reading of a published one are in variants alone, and in
+    findings, which may compare readings.
     """
     others = {
         name

@@ -1,5 +1,5 @@
 # Claims with their verdicts, the audit of the paper's own numbers, and which verdicts depend on
-# which choice.
+# which reading.
 
 
 rule claims:

@@ -86,15 +86,23 @@ def first_generation_within(
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
-def deviation(column: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of a column from the median of its method and condition."""
-    median = runs.groupby(["experiment", "condition", "method"])[column].transform("median")
-    return (runs[column] / median - 1).abs()
+@metric(
+    "-",
+    "absolute deviation of the length from the median of its condition and method, relative",
+    feasible_only=True,
+)
+def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Absolute relative deviation (n,) of the length from the median of its method and
+    condition.
+    """
+    median = runs.groupby(["experiment", "condition", "method"])["length"].transform("median")
+    return (runs["length"] / median - 1).abs()
 
 
-def over(column: str, bound: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """A column over one that bounds it from below, minus 1 (n,)."""
-    return runs[column] / runs[bound] - 1
+@metric("-", "length / exact shortest length of the problem - 1", feasible_only=True, least=0.0)
+def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Length over the exact shortest length, minus 1 (n,)."""
+    return runs["length"] / runs["bound"] - 1
 
 
 def near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
@@ -125,8 +133,8 @@ def paired_gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -
     """
     arrived = runs["method"].where(runs["feasible"].astype(bool))
     together = arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique")
-    gap = over("arrival", "least_arrival", runs, problems)
-    return gap.where(together == runs["method"].nunique())
+    late = runs["arrival"] / runs["least_arrival"] - 1
+    return late.where(together == runs["method"].nunique())
 
 
 def samples_of(path: Path, count: int) -> np.ndarray:

@@ -133,13 +133,6 @@ METRICS |= {
     "wrongly_rejected": count(
         "free by the checker's test, not by the planner's own", partial(measures.disagrees, False)
     ),
-    "gap": Metric(
-        "-",
-        "length / exact shortest length of the problem - 1",
-        partial(measures.over, "length", "bound"),
-        feasible_only=True,
-        least=0.0,
-    ),
     "generation_improved": generation(
         "last generation that improved the objective",
         partial(measures.first_generation_within, 0.0),
@@ -157,12 +150,6 @@ METRICS |= {
         lambda runs, _: runs["length"] / measures.reference(runs) - 1,
         feasible_only=True,
         needs=("reference",),
-    ),
-    "deviation": Metric(
-        "-",
-        "absolute deviation of the length from the median of its condition and method, relative",
-        partial(measures.deviation, "length"),
-        feasible_only=True,
     ),
     "collided": count(
         "whether the robot is in an obstacle at any time",

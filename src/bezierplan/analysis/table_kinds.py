@@ -1,10 +1,10 @@
 """The kinds of table, each a model of its keys.
 
-A study's tables are checked against them at every start of the workflow, and those of a job again
-(`table_of`), so this file imports nothing but what models need.
+A study's tables are checked against them at every start of the workflow, so this file imports
+nothing but what models need.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -151,13 +151,13 @@ class Pivot(TableEntry):
     published: PublishedFile = Field(
         None,
         description="a file in the study's folder `published` to compare with: letters, digits, _ "
-        "and -, then .csv; the table then has the paper's form: the paper's methods alone, in its "
-        "interpretation (`primary`), and the printed numbers in the same rows and columns",
+        "and -, then .csv; the table then has the paper's form: the paper's methods alone, under "
+        "the default reading (`primary`), and the printed numbers in the same rows and columns",
     )
     extends: Annotated[Name, Names("compared")] = Field(
         None,
         description="a table with published numbers: they are compared with the runs of this table "
-        "as well, of which there are more: variants, baselines, other interpretations",
+        "as well, of which there are more: variants, baselines, other readings",
     )
     reads: dict[Name, Metric] = Field(
         {},
@@ -183,7 +183,7 @@ class Pivot(TableEntry):
     )
     primary: Where = Field(
         {},
-        description="column → the value that is the paper's interpretation, the only one that a "
+        description="column → its value under the default reading, the only one that a "
         "table with published numbers shows; left out: all",
     )
 
@@ -248,8 +248,3 @@ TABLES = {
     for model in TableEntry.__subclasses__()
 }
 """Kind -> its model."""
-
-
-def table_of(values: dict[str, Any]) -> TableEntry:
-    """The table of a job, from its plain values."""
-    return TABLES[values["kind"]].model_validate(values)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
+from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
 from bezierplan.places import relative
 from bezierplan.running.inputs import PAPER, tree
@@ -40,6 +41,10 @@ class Study(Experiments, ArtefactsFile):
         names = [*self.tables, *self.figures]
         numbered = [name for name in names if tree(name) == PAPER] or names
         return numbered if folder == PAPER else [name for name in names if name not in numbered]
+
+    def artefact(self, name: str) -> TableEntry | Figure:
+        """A table or figure."""
+        return self.tables.get(name) or self.figures[name]
 
     def files_of(self, name: str) -> list[str]:
         """The files of a table or figure, in the folder of the study's results."""

@@ -2,7 +2,7 @@
 for each rule makes its job from a study, or all, and the rule's wildcards.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from bezierplan.analysis.claims.material import Display, StudyForClaims
@@ -32,7 +32,7 @@ from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.definition import Study
-from bezierplan.study.experiments import descriptions, problems_job
+from bezierplan.study.experiments import BaselineEntry, descriptions, problems_job
 
 Studies = dict[str, Study]
 
@@ -178,7 +178,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     """Labels, except those of methods, problems and workspaces that a table or figure does not
     show.
     """
-    spec = study.tables.get(artefact) or study.figures[artefact]
+    spec = study.artefact(artefact)
     layout = study.layout.get(artefact)
     printed = getattr(spec, "labels", {}) | (layout.names if layout else {})
     if getattr(spec, "names_any", False):
@@ -277,7 +277,7 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     """The caption of a table or figure: title, what the paper says of its own, and the runs behind
     it. The page has the settings of each method, and the verdicts of claims.
     """
-    title = (study.tables.get(artefact) or study.figures[artefact]).title
+    title = study.artefact(artefact).title
     words = says(study, artefact)
     parts = [title, words and f"In print: {words}", behind(study, artefact, scale)]
     return ". ".join(filter(None, parts)) + "."
@@ -290,7 +290,7 @@ def says(study: Study, artefact: str) -> str:
 
 def behind(study: Study, artefact: str, scale: str) -> str:
     """The runs of each method behind a table or figure."""
-    spec = study.tables.get(artefact) or study.figures[artefact]
+    spec = study.artefact(artefact)
     parts, told = getattr(spec, "panels", [spec]), []
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
@@ -301,7 +301,7 @@ def behind(study: Study, artefact: str, scale: str) -> str:
         layouts = max(each[scale] for each in drawn)
         told.append(
             f"{experiment}: {'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
-            f"run{'s' * (repeats > 1)} of each method on each "
+            f"run{'s' if repeats > 1 else ''} of each method on each "
             + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
         )
     return "; ".join(told)
@@ -409,34 +409,29 @@ def audit(study: Study, scale: str) -> Audit:
 
 def baseline_comparison(studies: Studies, scale: str) -> BaselineTable:
     """The studies that name a baseline."""
-    experiments = {
-        key: comparison.experiments
-        for key, study in studies.items()
-        if (comparison := study.baseline_comparison)
-    }
-    return _beside_baselines(studies, scale, experiments, with_baselines=False)
+    return _beside_baselines(studies, scale, lambda beside: beside.experiments)
 
 
 def worth(studies: Studies, scale: str) -> BaselineTable:
     """The studies that have a generic optimiser beside their methods; with all baselines."""
-    experiments = {
-        key: [comparison.worth]
-        for key, study in studies.items()
-        if (comparison := study.baseline_comparison) and comparison.worth
-    }
-    return _beside_baselines(studies, scale, experiments, with_baselines=True)
+    return _beside_baselines(
+        studies, scale, lambda beside: one_or_list(beside.worth or []), with_baselines=True
+    )
 
 
 def _beside_baselines(
-    studies: Studies, scale: str, experiments: dict[str, list[str]], *, with_baselines: bool
+    studies: Studies,
+    scale: str,
+    of: Callable[[BaselineEntry], list[str]],
+    with_baselines: bool = False,
 ) -> BaselineTable:
-    """Methods of experiments, by study, beside the baseline that the study names."""
+    """Methods of experiments beside the baseline that their study names, if it does."""
     baselines, repeats, shows = {}, {}, {}
-    for key, names in experiments.items():
-        study, comparison = studies[key], studies[key].baseline_comparison
-        baselines[key] = (comparison.baseline, comparison.proposed)
-        for name in names:
-            methods = [*study.experiments[name].methods, comparison.baseline]
+    for key, study in studies.items():
+        beside = study.baseline_comparison
+        for name in of(beside) if beside else []:
+            baselines[key] = (beside.baseline, beside.proposed)
+            methods = [*study.experiments[name].methods, beside.baseline]
             if with_baselines:
                 methods = study.methods_of(name)
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]

@@ -7,12 +7,10 @@ from bezierplan.analysis.jobs import Verification
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
-    Citation,
-    FigureView,
+    ArtefactView,
     MethodView,
     PageJob,
     StudyView,
-    TableView,
 )
 from bezierplan.machine.digest import content_digest
 from bezierplan.places import STUDIES
@@ -83,7 +81,15 @@ def _of_project(study: Study) -> bool:
 
 def _study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
-    names, paper = shown_of(study, scale, root), study.paper
+    artefacts = {
+        name: ArtefactView(
+            study.artefact(name).title,
+            jobs.behind(study, name, scale),
+            jobs.says(study, name),
+            study.whole(name) if name in study.tables else None,
+        )
+        for name in shown_of(study, scale, root)
+    }
     behind = {
         name: (
             [method for method in study.methods_of(name) if method not in study.baselines],
@@ -93,32 +99,22 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
     }
     return StudyView(
         title=study.title,
-        paper=paper and Citation(paper.title, paper.where, paper.doi),
+        paper=study.paper,
         labels=study.labels,
         methods={
             name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
         },
         claims={claim.id: claim for claim in study.claims},
         repeats=_repeats(study, scale),
-        tables={
-            name: TableView(
-                study.tables[name].title,
-                jobs.behind(study, name, scale),
-                study.whole(name),
-                jobs.says(study, name),
-            )
-            for name in names
-            if name in study.tables
-        },
-        figures={
-            name: FigureView(figure.title, jobs.behind(study, name, scale), jobs.says(study, name))
-            for name in names
-            if (figure := study.figures.get(name))
-        },
+        tables={name: each for name, each in artefacts.items() if name in study.tables},
+        figures={name: each for name, each in artefacts.items() if name in study.figures},
         assumptions=[
             dict(each) | {"default": default_of(study, each)} for each in study.assumptions
         ],
-        files=[*(["claims", "checks"] if study.claims else []), *(["audit"] * has_audit(study))],
+        files=[
+            *(("claims", "checks") if study.claims else ()),
+            *(("audit",) if has_audit(study) else ()),
+        ],
         changes=changes(study.key, settings_of(study)) if _of_project(study) else [],
         experiments=behind,
     )

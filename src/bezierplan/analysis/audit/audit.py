@@ -63,10 +63,10 @@ def below_bound(
 
     tables: published numbers, by table, as from `read_published`. bounds: of the same tables'
     experiments, one row per problem, indexed by name. primary: of a table, column -> the value of
-    the primary interpretation. The allowance is half a unit of the last printed digit.
+    the default reading. The allowance is half a unit of the last printed digit.
 
     A number's problem is the one that its row names, as problem or as workspace; without either,
-    that of the primary interpretation, or the only one of the experiment. Numbers that cover
+    that of the default reading, or the only one of the experiment. Numbers that cover
     several problems are left out.
     """
     rows, rule = [], "a path is no shorter than the shortest path"

@@ -16,10 +16,8 @@ from collections.abc import Collection, Iterable, Mapping
 import pandas as pd
 
 from bezierplan.analysis.claims import judge
-from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Material
-from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.readings.readings import LEAST_P
 
 SIDES = {"supported": "holds", "partly": "holds", "contradicted": "fails", "no effect": "nothing"}
@@ -37,15 +35,11 @@ def covered(claims: Iterable[Claim], experiments: Collection[str]) -> list[Claim
     for claim in claims:
         checks = [check for check in claim.checks if check.primary]
         if all(
-            check.experiments and {*check.experiments} <= {*experiments} and not _timed(check)
+            check.experiments and {*check.experiments} <= {*experiments} and not check.timed
             for check in checks
         ):
             chosen.append(claim.in_primary_variant().but(checks=checks))
     return chosen
-
-
-def _timed(check: object) -> bool:
-    return isinstance(check, OfRuns) and METRICS[check.metric].unit == "s"
 
 
 def judged(material: Material) -> pd.DataFrame:

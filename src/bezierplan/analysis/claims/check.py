@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from bezierplan.analysis.metric import METRICS
 from bezierplan.schema.model import (
     Column,
     Experiment,
@@ -132,6 +133,11 @@ class ClaimCheck(Model):
     def statistic_shown(self) -> str:
         """The statistic that is compared; empty for a kind without a choice."""
         return self.statistic or "rank" if "statistic" in type(self).model_fields else ""
+
+    @property
+    def timed(self) -> bool:
+        """Whether it is of seconds."""
+        return METRICS[self.metric].unit == "s"
 
     @property
     def relative(self) -> bool:

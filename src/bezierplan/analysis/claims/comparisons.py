@@ -28,17 +28,6 @@ REST = "rest"
 _FACTORS = ["experiment", "condition", "method"]
 
 
-def is_timed(check: ClaimCheck) -> bool:
-    """Whether a check is of seconds."""
-    return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
-
-
-def unit_of(metric: str, experiments: list[str], material: Material) -> str:
-    """The unit of a metric in experiments, whose problems share one unit of length."""
-    problems = material.results[experiments[0]].problems
-    return metrics.unit(metric, next(iter(problems.values())).workspace.unit)
-
-
 def with_rest(check: ClaimCheck, claim: Claim, material: Material) -> ClaimCheck:
     """The check with `rest` replaced by the groups of the claim's artefact that the check does not
     name, without variants of methods: a sentence of the paper is about its own.
@@ -109,7 +98,9 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     tables = _published_tables(check, claim, material)
     of_tables = [key for _, table in tables for key in table if key in runs and key != "value"]
     keys = list(dict.fromkeys(["experiment", *told_apart, *of_tables]))
-    printed_tables = [printed_table(*each, check.printed_metric) for each in tables]
+    printed_tables = [
+        printed_table(number, *each, check.printed_metric) for number, each in enumerate(tables)
+    ]
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
     _refuse_mixtures(check, claim, runs, [*told_apart, unit])
     # Published numbers are found by the places of the runs, each once.

@@ -120,7 +120,7 @@ class Finding(NamedTuple):
 
 
 class MarkedComparison(NamedTuple):
-    """One comparison of terms at a place; `comparison` is None if no runs are compared. primary:
+    """One comparison of terms; `comparison` is None if no runs are compared. primary:
     False for a secondary check.
 
     parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
@@ -129,7 +129,6 @@ class MarkedComparison(NamedTuple):
     number: int
     check: Any
     primary: bool
-    place: tuple[tuple[str, Any], ...]
     terms: Terms
     comparison: Comparison | None
     finding: Finding
@@ -137,6 +136,16 @@ class MarkedComparison(NamedTuple):
     mark_family: str = ""
     p_family: float = math.nan
     parts: tuple[Comparison, ...] = ()
+
+    @property
+    def place(self) -> tuple[tuple[str, Any], ...]:
+        """That of the comparison."""
+        return self.comparison.place if self.comparison else ()
+
+    @property
+    def counted(self) -> str:
+        """How many units of each cell count (`Comparison.counted`)."""
+        return self.comparison.counted if self.comparison else ""
 
 
 # What a claim says about point values. All take (..., k) numbers of cells, so that they work for
@@ -357,11 +366,16 @@ def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     )
     held = np.mean(claimed(check, effects, margin))
     return finding._replace(
-        mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
+        mark=by_share(held),
         chance_known=n >= ENOUGH * comparison.paper_units,
         reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
         "drawn from ours",
     )
+
+
+def by_share(share: float) -> str:
+    """The mark of a sentence that holds in a share of draws."""
+    return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
 
 
 def two_sided(draws: np.ndarray) -> float:

@@ -45,6 +45,7 @@ import math
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
@@ -80,111 +81,120 @@ def _judge_variant(
     claim: Claim, first: dict, assignment: dict, material: Material
 ) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
-    variant = name_of(assignment)
-    holds = claim.holds
-    name = f"{material.study.name}/{claim.id}/{variant}"
     # `rest` means the same as in the primary variant, so it is filled in before values are
     # substituted.
     checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
     checks = in_variant(checks, first, assignment)
-    content = {
-        **{key: getattr(claim, key) for key in ("id", "place", "statement")},
-        "study": material.study.name,
-        "variant": variant,
+    key = {"study": material.study.name, "id": claim.id, "variant": name_of(assignment)}
+    judgements, obstacle = _judgements(checks, claim, "/".join(key.values()), material)
+    deciding = [entry for entry in judgements if entry.primary]
+    decisive = None if obstacle else _shown(deciding, claim.holds)
+    row = key | {
+        "place": claim.place,
+        "statement": claim.statement,
         "artefact": ", ".join(claim.artefacts),
         "finding": bool(claim.finding),
         "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
-        "timed": any(
-            comparisons.is_timed(check)
-            for check in checks
-            if check.primary and len(with_work(check)) == 1
-        ),
+        "timed": any(with_work(check)[0].timed for check in checks if check.primary),
+        "published": _published(deciding),
     }
-    judgements, obstacle = [], ""
-    for number, check in [
-        (number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)
-    ]:
-        try:
-            judgements += _findings(number, check, claim, name, material)
-        except Untestable as reason:
-            if not check.primary:
-                judgements.append(
-                    MarkedComparison(
-                        number, check, False, (), Terms(), None, Finding(reason=str(reason))
-                    )
-                )
-            else:
-                obstacle = obstacle or str(reason)
-    judgements = _marked(judgements)
-    deciding = [each for each in judgements if each.primary]
-    decisive = None if obstacle else _shown(deciding, holds)
-    named = {key: content[key] for key in ("study", "id", "variant")}
-    rows = [
-        _check_row(each, material) | named | {"decisive": each is decisive} for each in judgements
+    if decisive:
+        row |= _summary(claim, judgements, deciding, decisive, material)
+    else:
+        row |= {"verdict": "untestable", "reason": obstacle}
+    return row, [
+        _check_row(entry, material) | key | {"decisive": entry is decisive} for entry in judgements
     ]
-    if decisive is None:
-        return content | {
-            "verdict": "untestable",
-            "published": _published(deciding),
-            "reason": obstacle,
-        }, rows
-    finding = decisive.finding
+
+
+def _summary(
+    claim: Claim,
+    judgements: list[MarkedComparison],
+    deciding: list[MarkedComparison],
+    decisive: MarkedComparison,
+    material: Material,
+) -> dict:
+    """What follows from the comparisons of a claim, some of which decide."""
+    finding, holds = decisive.finding, claim.holds
     verdict = verdicts.verdict(
-        [each.mark for each in deciding], [each.mark_family for each in deciding], holds
+        [entry.mark for entry in deciding], [entry.mark_family for entry in deciding], holds
     )
     if verdict == "undecided" and all(
-        each.finding.chance_known for each in deciding if each.mark_family == "?"
+        entry.finding.chance_known for entry in deciding if entry.mark_family == "?"
     ):
         verdict = "depends"
     everywhere = verdict == "supported" and holds != "any"
-    unit = _unit(deciding[0].check, material)
     reasons = [
         sentences.by_own_criterion(claim, verdict),
-        sentences.less_than(deciding, verdict, unit),
+        sentences.less_than(deciding, verdict, _unit(deciding[0].check, material)),
         _reason(decisive),
         sentences.disagreement(judgements),
         claim.note or "",
     ]
-    summary = finding._asdict() | {
+    return finding._asdict() | {
         "verdict": verdict,
-        "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
+        "holds": f"{sum(entry.mark == '+' for entry in deciding)} of {len(deciding)}",
         "where_it_holds": ""
         if everywhere
         else sentences.where_it_holds(judgements, material.study.labels),
-        "published": _published(deciding),
         "low95": finding.low,
         "high95": finding.high,
-        "counted": decisive.comparison.counted if decisive.comparison else "",
+        "counted": decisive.counted,
         "p_family": decisive.p_family,
         "reason": "; ".join(filter(None, reasons)),
     }
-    return content | summary, rows
+
+
+def _judgements(
+    checks: list[ClaimCheck], claim: Claim, name: str, material: Material
+) -> tuple[list[MarkedComparison], str]:
+    """The comparisons of a claim with their marks, and why it cannot be tested; empty if it can."""
+    judgements, obstacle = [], ""
+    for number, written in enumerate(checks, start=1):
+        for check in with_work(written):
+            try:
+                judgements += _findings(number, check, claim, name, material)
+            except Untestable as reason:
+                if check.primary:
+                    obstacle = obstacle or str(reason)
+                else:
+                    nothing = Finding(reason=str(reason))
+                    judgements.append(
+                        MarkedComparison(number, check, False, Terms(), None, nothing)
+                    )
+    return _marked(judgements), obstacle
 
 
 def _findings(
     number: int, check: ClaimCheck, claim: Claim, name: str, material: Material
 ) -> list[MarkedComparison]:
     """The comparisons of one check with their findings. Raises Untestable."""
-    primary, kind = check.primary, kind_of(check)
+    kind = kind_of(check)
     judged: list[tuple[Terms, Comparison | None, Finding]]
     if not isinstance(check, OfRuns):
         judged = [
             (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
         ]
-    elif comparisons.is_timed(check) and not check.relative:
+    elif check.timed and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     else:
         judged = [
             (each.terms, each, kind.find(check, each, f"{name}/{number}/{each.terms.name}"))
             for each in comparisons.comparisons(check, claim, material)
         ]
-    found = []
-    for terms, compared, finding in judged:
-        place = compared.place if compared else ()
-        finding = verdicts.among(finding, check, material.among)
-        found.append(MarkedComparison(number, check, primary, place, terms, compared, finding))
-    return _together(found) if check.together else found
+    entries = [
+        MarkedComparison(
+            number,
+            check,
+            check.primary,
+            terms,
+            compared,
+            verdicts.among(finding, check, material.among),
+        )
+        for terms, compared, finding in judged
+    ]
+    return _together(entries) if check.together else entries
 
 
 def _together(findings: list[MarkedComparison]) -> list[MarkedComparison]:
@@ -201,26 +211,17 @@ def _together(findings: list[MarkedComparison]) -> list[MarkedComparison]:
 
 def _marked(findings: list[MarkedComparison]) -> list[MarkedComparison]:
     """The comparisons with their marks, the primary ones also with their marks in the family."""
-    tested = [
-        number
-        for number, each in enumerate(findings)
-        if each.primary and not math.isnan(each.finding.p)
-    ]
-    corrected = dict(
-        zip(tested, verdicts.family(np.array([findings[number].finding.p for number in tested])))
-    )
-    marked = []
-    for number, each in enumerate(findings):
-        p_family = corrected.get(number, math.nan)
-        together = verdicts.mark(each.finding, p_family) if each.primary else ""
-        marked.append(
-            each._replace(
-                mark=verdicts.mark(each.finding, each.finding.p),
-                mark_family=together,
-                p_family=p_family,
-            )
+    p = np.array([entry.finding.p if entry.primary else math.nan for entry in findings])
+    in_family = np.full(len(p), math.nan)
+    in_family[~np.isnan(p)] = verdicts.family(p[~np.isnan(p)])
+    return [
+        entry._replace(
+            mark=verdicts.mark(entry.finding, entry.finding.p),
+            mark_family=verdicts.mark(entry.finding, p_family) if entry.primary else "",
+            p_family=p_family,
         )
-    return marked
+        for entry, p_family in zip(findings, in_family.tolist())
+    ]
 
 
 def _shown(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
@@ -231,23 +232,21 @@ def _shown(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
     smallest p, among those with a + if there are any.
     """
 
-    def p(each: MarkedComparison) -> float:
-        return (
-            each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
-        )
+    def p(entry: MarkedComparison) -> float:
+        if math.isnan(entry.finding.p):
+            return -1.0 if entry.mark == "+" else 2.0
+        return entry.finding.p
 
     if holds == "any":
-        return min([each for each in deciding if each.mark_family == "+"] or deciding, key=p)
-    against = [each for each in deciding if each.mark_family == "-"]
-    if against:
-        first = [each for each in against if each.number == against[0].number]
-        return max(
-            first,
-            key=lambda each: np.nan_to_num(
-                abs(each.finding.effect - each.check.target), nan=np.inf
-            ),
-        )
-    return max(deciding, key=p)
+        return min([entry for entry in deciding if entry.mark_family == "+"] or deciding, key=p)
+    against = [entry for entry in deciding if entry.mark_family == "-"]
+    if not against:
+        return max(deciding, key=p)
+    first = [entry for entry in against if entry.number == against[0].number]
+    return max(
+        first,
+        key=lambda entry: np.nan_to_num(abs(entry.finding.effect - entry.check.target), nan=np.inf),
+    )
 
 
 # The printed numbers, and experiments of the paper's size.
@@ -296,6 +295,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
         "metric": check.metric,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
+        "scale": check.scale,
         **entry.terms._asdict(),
         "together": len(entry.parts) or None,
         "place": json.dumps(
@@ -303,13 +303,13 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
         ),
         "mark": entry.mark,
         "mark_family": entry.mark_family,
-        "counted": entry.comparison.counted if entry.comparison else "",
+        "counted": entry.counted,
         "low95": finding.low,
         "high95": finding.high,
         "p_family": entry.p_family,
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
-        "timed": comparisons.is_timed(check),
+        "timed": check.timed,
         "reason": _reason(entry),
     }
 
@@ -318,5 +318,7 @@ def _unit(check: ClaimCheck, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
     if check.effect_unit:
         return check.effect_unit
-    experiments = [name for name in check.experiments if name in material.results]
-    return comparisons.unit_of(check.metric, experiments, material) if experiments else ""
+    known = [material.results[name] for name in check.experiments if name in material.results]
+    # All problems share one unit of length.
+    problem = next((problem for each in known for problem in each.problems.values()), None)
+    return metrics.unit(check.metric, problem.workspace.unit) if problem else ""

@@ -9,19 +9,13 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import OfRuns
-from bezierplan.analysis.metrics import METRICS
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 
 
-class PrintedCell(NamedTuple):
-    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value,
-    number of runs).
-    """
-
-    table: int
-    statistics: dict[str, tuple[int, float, float]]
+PrintedCell = dict[str, tuple[tuple[int, int], float, float]]
+"""Printed numbers of one cell: statistic -> (its table and row, value, number of runs)."""
 
 
 def printed(
@@ -30,34 +24,23 @@ def printed(
     """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if
     that is not printed.
 
-    rows_of_conditions: of each condition, of each cell, its rows as from `rows_of_cell`.
+    rows_of_conditions: of each condition, of each cell, its numbers as from `rows_of_cell`.
 
     All use one statistic: the check's own or an unstated one, for a median of seconds also another;
     if it names none, the first of `_ANY_STATISTIC` that is printed for every cell. NaN where a cell
     is not printed, or where two cells share a row (the paper does not distinguish them).
     """
-    cells = len(rows_of_conditions[0])
-    nothing = np.full(cells, np.nan), None
-    rows_of_conditions = list(itertools.chain.from_iterable(rows_of_conditions))
-    if None in rows_of_conditions:
-        return nothing
-    rows = [
-        (each.table, row) for each in rows_of_conditions for row, _, _ in each.statistics.values()
-    ]
-    if len(set(rows)) < len(rows):
-        return nothing
-    for statistic in _wanted(check):
-        if all(statistic in each.statistics for each in rows_of_conditions):
-            values, runs = np.array(
-                [each.statistics[statistic][1:] for each in rows_of_conditions]
-            ).T
-            numbers = (
-                (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
-            )
-            return effects.event(check, numbers), None if np.isnan(runs).all() else int(
-                np.nanmin(runs)
-            )
-    return nothing
+    size = len(rows_of_conditions[0])
+    cells = [cell for cell in itertools.chain(*rows_of_conditions) if cell]
+    rows = [row for cell in cells for row, _, _ in cell.values()]
+    if len(cells) == size * len(rows_of_conditions) and len({*rows}) == len(rows):
+        for statistic in _wanted(check):
+            if all(statistic in cell for cell in cells):
+                values, runs = np.array([cell[statistic][1:] for cell in cells]).T
+                numbers = values / runs if statistic == "count" else values
+                known = None if np.isnan(runs).all() else int(np.nanmin(runs))
+                return effects.event(check, numbers.reshape(-1, size).mean(axis=0)), known
+    return np.full(size, np.nan), None
 
 
 def _wanted(check: OfRuns) -> tuple[str, ...]:
@@ -65,33 +48,32 @@ def _wanted(check: OfRuns) -> tuple[str, ...]:
     programs disturb medians less.
     """
     named = check.statistic
-    timed = check.metric in METRICS and METRICS[check.metric].unit == "s"
     if named in (None, "rank"):
         return _ANY_STATISTIC
-    return (named, "unstated", *(_ANY_STATISTIC if timed and named == "median" else ()))
+    return (named, "unstated", *(_ANY_STATISTIC if check.timed and named == "median" else ()))
 
 
 class PrintedTable(NamedTuple):
     """The printed numbers of one metric in a table: its experiment; the columns that tell its cells
-    apart; and their values in a cell -> statistic -> (row in the table, value, number of runs).
+    apart; and the cells by their values there.
     """
 
     experiment: str
     keys: list[str]
-    cells: dict[tuple, dict[str, tuple[int, float, float]]]
+    cells: dict[tuple, PrintedCell]
 
 
-def printed_table(experiment: str, table: pd.DataFrame, metric: str) -> PrintedTable:
+def printed_table(
+    table_number: int, experiment: str, table: pd.DataFrame, metric: str
+) -> PrintedTable:
     """The numbers of a metric in a table of published numbers."""
     keys = table.columns[: table.columns.get_loc("metric")].to_list()
     rows = table[table["metric"] == metric].dropna(subset=keys)
-    cells: dict[tuple, dict] = {}
+    cells: dict[tuple, PrintedCell] = {}
     for number, row in zip(rows.index, rows.to_dict("records")):
-        cells.setdefault(tuple(row[key] for key in keys), {})[row["statistic"]] = (
-            number,
-            float(row["value"]),
-            float(row["n"]),
-        )
+        cell = cells.setdefault(tuple(row[key] for key in keys), {})
+        place = (table_number, number)
+        cell[row["statistic"]] = (place, float(row["value"]), float(row["n"]))
     return PrintedTable(experiment, keys, cells)
 
 
@@ -104,7 +86,7 @@ def rows_of_cell(
     variant_of: method -> the method whose published numbers count.
     """
     experiments = {row["experiment"] for row in cell}
-    for number, table in enumerate(tables):
+    for table in tables:
         if experiments != {table.experiment} or not set(table.keys) <= cell[0].keys():
             continue
         places = {tuple(row[key] for key in table.keys) for row in cell}
@@ -115,5 +97,5 @@ def rows_of_cell(
             for key, value in zip(table.keys, places.pop())
         )
         if place in table.cells:
-            return PrintedCell(number, table.cells[place])
+            return table.cells[place]
     return None

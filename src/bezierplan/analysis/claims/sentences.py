@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis.claims import comparisons, variants
+from bezierplan.analysis.claims import variants
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
@@ -398,7 +398,7 @@ def _group(check: ClaimCheck, group: Any) -> Any:
 
 def disagreement(findings: Sequence[MarkedComparison]) -> str:
     """A note where seconds disagree with the counted work that is judged in their place."""
-    seconds = {_key(each): each.mark for each in findings if comparisons.is_timed(each.check)}
+    seconds = {_key(each): each.mark for each in findings if each.check.timed}
     pairs = [
         (each.mark, seconds[_key(each)])
         for each in findings

@@ -38,7 +38,7 @@ number. Columns:
 - bound: least length of the problem, of the metric's kind (`metrics.Metric`); for several problems,
   the median over the runs
 - gap: median over the feasible runs of that kind of length / bound - 1
-- primary: whether the row is the paper's interpretation: no variant of a method, and what the
+- primary: whether the row is of the default reading: no variant of a method, and what the
   table's `primary` names
 """
 
@@ -282,7 +282,7 @@ def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
 def _is_primary(
     table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]
 ) -> np.ndarray:
-    """Which rows (n,) are the paper's interpretation. primary: column -> the value that it has
+    """Which rows (n,) are of the default reading. primary: column -> the value that it has
     there.
     """
     chosen = table.index.isin(select(table, primary).index)
@@ -408,9 +408,9 @@ def _described(
     ours, predicted = statistics.statistic(statistic, numbers), (placed.low, placed.high)
     return {
         "n_ours": len(numbers),
-        "n_asked": int(row["asked"]),
+        "n_asked": int(row["size"]),
         "value_ours": ours,
-        "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["asked"]), size),
+        "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["size"]), size),
         "low95_ours": low,
         "high95_ours": high,
         "low95_predicted": placed.low,

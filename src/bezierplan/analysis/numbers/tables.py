@@ -7,7 +7,8 @@ is needed to distinguish numbers but not named as index or column becomes a leve
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,7 +16,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, repeated, select
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.table_kinds import Pivot, TableValue
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
@@ -41,97 +42,123 @@ def in_order(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.Da
     return table.assign(**ordered)
 
 
+class Cell(NamedTuple):
+    """One statistic of an entry of `values` over runs with equal keys.
+
+    runs: how many they are. draws: of random maps; 0 on others. share_feasible, bound, gap: of all
+    these runs, the bound (median) and gap (median of the feasible ones) of the metric's kind of
+    length. least, most: the range of the metric for one run (`least` of an entry is stronger than
+    that of its metric). value: the entry's number. size: how many runs satisfy the entry's
+    `where`, with or without a value; each once. numbers: sorted (n,): the metric of those that have
+    one. by_run: of all that satisfy it, NaN without a value, by problem and repeat. groups: the
+    numbers as one array for each value of the column `within`, None without that key.
+    """
+
+    runs: int
+    draws: int
+    share_feasible: float
+    bound: float
+    gap: float
+    least: float
+    most: float
+    value: int
+    metric: str
+    statistic: str
+    decimals: int
+    size: int
+    numbers: np.ndarray
+    by_run: pd.Series
+    groups: tuple[np.ndarray, ...] | None
+
+
+class _Entry(NamedTuple):
+    """An entry of `values` with what it needs of each run: whether it asks for it, and counts it;
+    its metric, bound and gap, and the least value that it can have.
+    """
+
+    spec: TableValue
+    selects: np.ndarray
+    counts: np.ndarray
+    values: np.ndarray
+    bound: np.ndarray
+    gap: np.ndarray
+    least: np.ndarray
+
+
 def cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of
-    `values`, and statistic.
+    `values`, and statistic; its columns are the keys and the fields of a `Cell`.
 
     beside: methods outside the table among those of its `where`, which metrics that compare methods
     leave out.
-
-    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
-    (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
-    how many satisfy `where`, with or without one; each once, in both; by_run: those of all, NaN
-    without one, by problem and repeat; groups: the numbers as one array for each value of the
-    column `within`, None without that key; least, most: the range of the metric for one run
-    (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
-    (how many), share_feasible, bound (median) and gap (median of the feasible ones) of the metric's
-    kind of length; draws (of random maps; 0 on others).
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
-    entries = spec.values
-    specs = [metrics.METRICS[entry.metric] for entry in entries]
-    wanted = {metric.gap for metric in specs} | {
-        entry.metric for entry, metric in zip(entries, specs) if not metric.among_rows
-    }
-    measures = {name: _measured(runs, name, results, beside).to_numpy() for name in sorted(wanted)}
-    # What compares methods compares those that the entry's `where` leaves.
-    places = [
-        _measured(select(runs, entry.where), entry.metric, results, beside)
-        .reindex(runs.index)
-        .to_numpy()
-        if metric.among_rows
-        else measures[entry.metric]
-        for entry, metric in zip(entries, specs)
-    ]
-    leasts = [entry.least or metric.least for entry, metric in zip(entries, specs)]
-    named = {
-        name
-        for metric, least in zip(specs, leasts)
-        for name in (metric.bound, least)
-        if isinstance(name, str)
-    }
-    bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
-    feasible = runs["feasible"].to_numpy()
-    asked = [runs.index.isin(select(runs, entry.where).index) for entry in entries]
-    copies = repeated(runs)
-    units = runs[spec.within].to_numpy() if spec.within else None
-    names = pd.MultiIndex.from_frame(runs[["problem", "repeat"]])
+    once = ~repeated(runs)
+
+    @cache
+    def measured(metric: str) -> np.ndarray:
+        return _measured(runs, metric, results, beside).to_numpy()
+
+    entries = []
+    for entry in spec.values:
+        metric, own = metrics.METRICS[entry.metric], select(runs, entry.where)
+        selects, counts = runs.index.isin(own.index), once
+        if metric.among_rows:
+            # It compares those that the entry's `where` leaves, and among others even a repeated
+            # run has a rank of its own.
+            values = _measured(own, entry.metric, results, beside).reindex(runs.index).to_numpy()
+            counts = True
+        else:
+            values = measured(entry.metric)
+        least = entry.least or metric.least
+        columns = runs[[metric.bound]].assign(least=runs.get(least, least))
+        bound, least = columns.to_numpy(dtype=float).T
+        entries.append(
+            _Entry(entry, selects, selects & counts, values, bound, measured(metric.gap), least)
+        )
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
-        positions = group.index.to_numpy()
-        same = {
-            **dict(zip(keys, key)),
-            "runs": len(positions),
-            "draws": runs["layout"].iloc[positions].nunique() if "layout" in runs else 0,
-            "share_feasible": feasible[positions].mean(),
-        }
-        for value, (entry, metric) in enumerate(zip(entries, specs)):
-            of_entry = positions[asked[value][positions]]
-            # Among others even a repeated run has a rank of its own.
-            single = of_entry[~copies[of_entry] | metric.among_rows]
-            # A run without a value counts nowhere.
-            chosen = single[~np.isnan(places[value][single])]
-            numbers = places[value][chosen]
-            least, groups = leasts[value], None
-            if units is not None:
-                own = units[chosen]
-                # Tuples, because pandas would expand lists of arrays.
-                groups = tuple(np.sort(numbers[own == unit]) for unit in np.unique(own))
-            if isinstance(least, str):
-                least = np.fmin.reduce(bounds[least][positions])
-            cell = same | {
-                "bound": _median(bounds[metric.bound][positions]),
-                "gap": _median(measures[metric.gap][positions]),
-                "least": least,
-                "most": metric.most,
-                "value": value,
-                "metric": entry.metric,
-                "decimals": entry.decimals,
-                "asked": len(single),
-                "numbers": np.sort(numbers),
-                "by_run": pd.Series(places[value][of_entry], names[of_entry]),
-                "groups": groups,
-            }
-            rows += [cell | {"statistic": statistic} for statistic in entry.statistics]
-    of_runs = ["runs", "draws", "share_feasible", "bound", "gap", "least", "most"]
-    of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "by_run", "groups"]
-    columns = [*keys, *of_runs, *of_cell]
-    # Of type object, so that integers stay integers next to published numbers without runs.
-    return pd.DataFrame(rows, columns=columns).assign(
-        decimals=pd.Series([row["decimals"] for row in rows], dtype=object)
+        for number, entry in enumerate(entries):
+            cell = _cell(runs, group.index.to_numpy(), number, entry, spec.within)
+            rows += [[*key, *cell._replace(statistic=name)] for name in entry.spec.statistics]
+    # Decimals of type object stay integers next to published numbers without runs.
+    return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
+
+
+def _cell(
+    runs: pd.DataFrame, places: np.ndarray, number: int, entry: _Entry, within: str | None
+) -> Cell:
+    """The cell of an entry and of the runs at some places, without its statistic."""
+    of_entry, counted = (places[mask[places]] for mask in (entry.selects, entry.counts))
+    # A run without a value counts nowhere.
+    chosen = counted[~np.isnan(entry.values[counted])]
+    numbers, groups = entry.values[chosen], None
+    if within:
+        units = runs[within].to_numpy()[chosen]
+        # Tuples, because pandas would expand lists of arrays.
+        groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
+    return Cell(
+        runs=len(places),
+        draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
+        share_feasible=runs["feasible"].to_numpy()[places].mean(),
+        bound=_median(entry.bound[places]),
+        gap=_median(entry.gap[places]),
+        least=np.fmin.reduce(entry.least[places]),
+        most=metrics.METRICS[entry.spec.metric].most,
+        value=number,
+        metric=entry.spec.metric,
+        statistic="",
+        decimals=entry.spec.decimals,
+        size=len(counted),
+        numbers=np.sort(numbers),
+        by_run=pd.Series(
+            entry.values[of_entry],
+            pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
+        ),
+        groups=groups,
     )
 
 
@@ -212,7 +239,7 @@ def pivot(
         return wide
     counted, asked = (
         laid(table, numbers, index, columns, math.nan)
-        for numbers in (table["numbers"].map(len), table["asked"])
+        for numbers in (table["numbers"].map(len), table["size"])
     )
     stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
     return _with_counts(wide, counted, asked, [": ".join(levels) for levels in stems])

@@ -63,7 +63,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     """One row per study: the published numbers that count, in total and by verdict of the test
     (`comparison`), and claims by verdict.
 
-    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary interpretations and
+    numbers: as from `numbers`. claims: as from `claims.judge`. Only the default reading and
     variants count.
     """
     judged = numbers[numbers["counted"]]

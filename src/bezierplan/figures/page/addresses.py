@@ -19,7 +19,7 @@ def of_cells(
 ) -> list[str]:
     """Addresses of the cells of a table, each with its key columns, then `metric` and `statistic`.
 
-    A key is left out where it has the value of the primary interpretation, and for a column with
+    A key is left out where it has its value under the default reading, and for a column with
     one value only, unless two cells would then have the same address: these name all their keys.
 
     >>> mean = {"method": "x", "metric": "length", "statistic": "mean"}

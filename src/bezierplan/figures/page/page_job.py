@@ -8,15 +8,6 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import TableEntry
 
 
-class Citation(NamedTuple):
-    """A paper as it is cited."""
-
-    title: str
-    where: str
-    """Journal and year, as far as known."""
-    doi: str | None
-
-
 class MethodView(NamedTuple):
     """A method of a study."""
 
@@ -24,24 +15,16 @@ class MethodView(NamedTuple):
     settings: dict[str, Any]
 
 
-class FigureView(NamedTuple):
-    """A figure of the page."""
+class ArtefactView(NamedTuple):
+    """A table or figure of the page."""
 
     title: str
     behind: str
     """Experiments and their repeats."""
     says: str = ""
     """What the paper says of its own."""
-
-
-class TableView(NamedTuple):
-    """A table of the page."""
-
-    title: str
-    behind: str
-    spec: TableEntry
-    """With what the one that it extends says of published numbers."""
-    says: str = ""
+    spec: TableEntry | None = None
+    """Of a table, with what the one that it extends says of published numbers."""
 
 
 class ExperimentView(NamedTuple):
@@ -62,8 +45,8 @@ class StudyView(NamedTuple):
     """A study of the page."""
 
     title: str
-    paper: Citation | None
-    """None for a reader's own study."""
+    paper: Any
+    """Its title, where it appeared, and doi; None for a reader's own study."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     methods: dict[str, MethodView]
@@ -73,8 +56,8 @@ class StudyView(NamedTuple):
     """The least and the largest number of runs of a method under a condition; empty for a study
     without experiments.
     """
-    tables: dict[str, TableView]
-    figures: dict[str, FigureView]
+    tables: dict[str, ArtefactView]
+    figures: dict[str, ArtefactView]
     assumptions: list[dict[str, Any]]
     """Details that the paper leaves open: the keys of their file, with the default in use."""
     files: list[str]

@@ -16,7 +16,7 @@ from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page.addresses import address, of_cells
-from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView
+from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
 from bezierplan.running.inputs import tree
 
 Row = dict[str, Any]
@@ -163,7 +163,7 @@ def _figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
 def _table(
     study: str,
     name: str,
-    artefact: TableView,
+    artefact: ArtefactView,
     folder: Path,
     labels: dict[str, str],
     counted: pd.DataFrame,

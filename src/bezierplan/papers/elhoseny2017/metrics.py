@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis.measures import deviation, free_cells, headings, held_history, samples_of
+from bezierplan.analysis.measures import free_cells, headings, held_history, samples_of
 from bezierplan.analysis.metric import (
     Metric,
     metric,
@@ -119,12 +119,6 @@ register(
             "u",
             "mean over the generations of the best objective so far",
             lambda runs, _: held_history(runs).mean(axis=1),
-        ),
-        "work_deviation": Metric(
-            "-",
-            "absolute deviation of the evaluations from the "
-            "median of their condition and method, relative",
-            partial(deviation, "evaluations"),
         ),
         "distinct_chromosomes": Metric(
             "-", "different chromosomes in the population, mean over the generations"

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
+from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, by_share, interval
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts import chaotic_maps
@@ -83,9 +83,14 @@ def gauss_above(
         start = chaotic_maps.random_start(rng, "gauss", math.nan)
         values = chaotic_maps.sequence("gauss", start, 1000, math.nan).values[FIRST_VALUES:]
         shares.append(np.mean(values > limit))
-    share = float(np.mean(shares))
-    reach = 1.96 * float(np.std(shares, ddof=1)) / math.sqrt(SEQUENCES)
-    return "-" if share > 0 else "+", share, (share - reach, share + reach), SEQUENCES
+    share, ends = _mean(np.array(shares))
+    return "-" if share > 0 else "+", share, ends, SEQUENCES
+
+
+def _mean(values: np.ndarray) -> tuple[float, tuple[float, float]]:
+    """The mean of values (n,) and its interval."""
+    mean, reach = values.mean(), 1.96 * values.std(ddof=1) / math.sqrt(len(values))
+    return float(mean), (float(mean - reach), float(mean + reach))
 
 
 def sensitive_to_start(
@@ -108,10 +113,8 @@ def sensitive_to_start(
     of: the map. singer_mu: mu of the Singer map.
     """
     rng = generator(f"tharwat2018/C46/{of}")
-    exponents = np.array([_exponent(rng, of, apart, singer_mu) for _ in range(DIVERGING)])
-    mean = float(exponents.mean())
-    reach = 1.96 * float(exponents.std(ddof=1)) / math.sqrt(DIVERGING)
-    low, high = mean - reach, mean + reach
+    exponents = [_exponent(rng, of, apart, singer_mu) for _ in range(DIVERGING)]
+    mean, (low, high) = _mean(np.array(exponents))
     mark = "+" if low > 0 else "-" if high < 1 / iterations else "?"
     return mark, mean, (low, high), DIVERGING
 
@@ -270,7 +273,7 @@ def least_above(
         axis=1
     )
     share = float((values.columns.to_numpy()[means.argmin(axis=1)] > limit).mean())
-    return _surely(share), share, None, len(values)
+    return by_share(share), share, None, len(values)
 
 
 def fewer_outliers(
@@ -312,8 +315,3 @@ def fewer_outliers(
         "+" if effect >= margin and low > 0 else "-" if effect <= -margin and high < 0 else within
     )
     return mark, effect, (low, high), len(runs) // (2 * len(CHAOTIC))
-
-
-def _surely(share: float) -> str:
-    """The mark of a sentence that holds in a share of draws."""
-    return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"

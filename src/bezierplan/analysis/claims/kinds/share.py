@@ -148,35 +148,44 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
             f"{name}: {check.metric} has values other than true and false; its check needs an event"
         )
     finding = Finding(k / n, "share", k / n, n=n)
-    holds = bool(claimed(check, np.array(k / n), math.nan))
     if check.pick:
-        return finding._replace(mark="+" if holds else "-")
+        return finding._replace(mark="+" if _holds(check, finding) else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     finding = finding._replace(low=float(exact.low), high=float(exact.high))
-    if check.threshold == "as printed" and comparison.paper_units:
-        chances = [end**comparison.paper_units for end in (finding.low, finding.high)]
-        mark = "+" if chances[0] > effects.ALPHA else "-" if chances[1] < effects.ALPHA else "?"
-        chance = f"the chance of {comparison.paper_units} of {comparison.paper_units} is {{:.2g}}"
-        return finding._replace(mark=mark, reason=chance.format((k / n) ** comparison.paper_units))
     if isinstance(check.threshold, str):
-        # For `some`, one example decides and many misses are needed to refute it; for `all` and
-        # `none` it is the other way round.
-        decided = holds == (check.threshold == "some") or n >= effects.LEAST_WITHOUT_EXAMPLE
-        mark = ("+" if holds else "-") if decided else "?"
-        return finding._replace(
-            mark=mark, reason="" if decided else f"fewer than {effects.LEAST_WITHOUT_EXAMPLE} runs"
-        )
+        return _by_example(check, finding, comparison.paper_units)
     if n < LEAST_RUNS:
         return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
-    threshold = check.threshold
+    threshold, side = check.threshold, effects.SIDES[check.direction]
     if len(comparison.strata) >= LEAST_RUNS:
-        return _share_of_conditions(finding, comparison, threshold, effects.SIDES[check.direction])
+        return _share_of_conditions(finding, comparison, threshold, side)
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(
         1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold)))
     )
-    toward = effects.SIDES[check.direction] * np.sign(k / n - threshold)
-    return finding._replace(p=p, toward=int(toward))
+    return finding._replace(p=p, toward=int(side * np.sign(k / n - threshold)))
+
+
+def _holds(check: Options, finding: Finding) -> bool:
+    return bool(claimed(check, np.array(finding.effect), math.nan))
+
+
+def _by_example(check: Options, finding: Finding, paper_units: int | None) -> Finding:
+    """The finding on `all`, `none` or `some`: for `some`, one example decides and many misses are
+    needed to refute it; for the others it is the other way round. And on `as printed`, where the
+    paper's number of units is known.
+    """
+    if check.threshold == "as printed" and paper_units:
+        low, chance, high = (
+            share**paper_units for share in (finding.low, finding.effect, finding.high)
+        )
+        mark = "+" if low > effects.ALPHA else "-" if high < effects.ALPHA else "?"
+        reason = f"the chance of {paper_units} of {paper_units} is {chance:.2g}"
+        return finding._replace(mark=mark, reason=reason)
+    holds = _holds(check, finding)
+    if holds == (check.threshold == "some") or finding.n >= effects.LEAST_WITHOUT_EXAMPLE:
+        return finding._replace(mark="+" if holds else "-")
+    return finding._replace(mark="?", reason=f"fewer than {effects.LEAST_WITHOUT_EXAMPLE} runs")
 
 
 def _share_of_conditions(

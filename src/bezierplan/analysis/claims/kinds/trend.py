@@ -88,9 +88,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     ours = effects.points(unpaired, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
-        changes = slopes * np.ptp(x)
-        if check.relative:
-            changes = changes / ours[0] if ours[0] else np.full(n, np.nan)
+        reference = ours[0] if check.relative else 1.0
+        changes = slopes * np.ptp(x) / (reference or math.nan)
         change = float(changes.mean())
         if n > MOST_RESAMPLED:
             draws = statistics.normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
@@ -104,15 +103,12 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         p = effects.two_sided(draws)
     low, high = effects.interval(draws)
     margin = effects.margin_of(check, unpaired)
-    return Finding(
-        *(change, "slope", slope, low, high, n, p),
-        toward=0
-        if abs(change) < margin
-        else int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change))),
-        margin=margin,
-        negligible=effects.is_negligible(low, high, margin, n),
-        reason=effects.why_none(change) or effects.no_difference(low, high, n),
-    )
+    toward = int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change)))
+    toward = 0 if abs(change) < margin else toward
+    negligible = effects.is_negligible(low, high, margin, n)
+    finding = Finding(change, "slope", slope, low, high, n, p, toward, margin, negligible)
+    reason = effects.why_none(change) or effects.no_difference(low, high, n)
+    return finding._replace(reason=reason)
 
 
 def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
