@@ -127,7 +127,7 @@ KINDS = {
     "number": "td[id]",
     "figure": ".figures figure",
     "method": "[id*='/method/']",
-    "detail": "[data-finds^=underspecified]",
+    "detail": "[data-finds^=assumption]",
     "comparison": "tr[id]",
     "heading": "h3[id]",
     "word": "dt[id]",

@@ -17,7 +17,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Display, Material, Untestable
-from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
+from bezierplan.analysis.claims.published import PrintedTable, printed, printed_table, rows_of_cell
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.results import pick, repeated, select
 from bezierplan.schema.checked import Fault
@@ -96,11 +96,8 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     every, pool = check.every, check.pool
     told_apart = [*every, *pool, *([column] if column else [])]
     tables = _published_tables(check, claim, material)
-    of_tables = [key for _, table in tables for key in table if key in runs and key != "value"]
+    of_tables = [key for table in tables for key in table.keys if key in runs]
     keys = list(dict.fromkeys(["experiment", *told_apart, *of_tables]))
-    printed_tables = [
-        printed_table(number, *each, check.printed_metric) for number, each in enumerate(tables)
-    ]
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
     _refuse_mixtures(check, claim, runs, [*told_apart, unit])
     # Published numbers are found by the places of the runs, each once.
@@ -113,22 +110,24 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
         conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
         compared = list(kind_of(check).cells(check, rows))
-        printed_rows = {}
-        for cell in dict.fromkeys(cell for _, cells in compared for cell in cells):
-            own = [
-                [row for row in part if column is None or row[column] == cell]
+        printed_cells = {
+            cell: [
+                rows_of_cell(
+                    [row for row in part if column is None or row[column] == cell],
+                    tables,
+                    material.study.variant_of,
+                )
                 for part in conditions
             ]
-            printed_rows[cell] = [
-                rows_of_cell(part, printed_tables, material.study.variant_of) for part in own
-            ]
+            for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
+        }
         for terms, cells in compared:
             strata = {
                 key: effects.event(check, table.reindex(columns=cells).to_numpy())
                 for key, table in unit_tables.items()
             }
             numbers, number_of_runs = printed(
-                check, list(zip(*(printed_rows[cell] for cell in cells)))
+                check, list(zip(*(printed_cells[cell] for cell in cells)))
             )
             comparison_list.append(
                 Comparison(
@@ -301,17 +300,17 @@ def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) ->
     )
 
 
-def _published_tables(
-    check: OfRuns, claim: Claim, material: Material
-) -> list[tuple[str, pd.DataFrame]]:
-    """Experiment and published numbers of each table of the check's experiments, the claim's
-    artefacts first.
+def _published_tables(check: OfRuns, claim: Claim, material: Material) -> list[PrintedTable]:
+    """The published numbers of each table of the check's experiments, the claim's artefacts
+    first.
     """
-    own = claim.artefacts
-    tables = []
-    for name in [*own, *(name for name in material.study.artefacts if name not in own)]:
+    tables: list[PrintedTable] = []
+    for name in dict.fromkeys([*claim.artefacts, *material.study.artefacts]):
         for part in material.study.artefacts.get(name, []):
             if part.published and part.experiment in check.experiments:
                 published = material.published[PurePath(part.published).stem]
-                tables.append((part.experiment, comparison.as_read(published, part.reads)))
+                numbers = comparison.as_read(published, part.reads)
+                tables.append(
+                    printed_table(len(tables), part.experiment, numbers, check.printed_metric)
+                )
     return tables

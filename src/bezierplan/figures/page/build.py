@@ -218,10 +218,10 @@ def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
 
 
 def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
-    """Numbers as rows and columns: a row for each combination of keys, the paper's interpretation
+    """Numbers as rows and columns: a row for each combination of keys, the default reading
     first, a column for each metric and statistic.
 
-    head: keys and columns as printed. rows: whether each is the paper's interpretation, its keys
+    head: keys and columns as printed. rows: whether each is of the default reading, its keys
     with the addresses of methods that they may name, its cells. same: keys that all rows share.
     decimals: of each column.
     """

@@ -302,7 +302,7 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
 
 def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Claims in their primary variant. Added: address, rule (what its count means), why,
-    comparisons, interpretations (its other variants), shown_in.
+    comparisons, others (its other variants), shown_in.
     """
     if "claims" not in files:
         return []
@@ -329,7 +329,7 @@ def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> l
                 "why": _why(claim, comparisons, checks, content.labels),
                 "comparisons": comparisons,
                 "variant": names.get(claim["variant"] or "", ""),
-                "interpretations": [
+                "others": [
                     row | {"variant": names.get(row["variant"], row["variant"])}
                     for row in every
                     if not row["primary"]

@@ -164,7 +164,7 @@ for (const filter of document.querySelectorAll(".filter")) {
 
 let index, unpacked = false; // Runs are entries, too: there is no search before they are unpacked.
 const EMPTY = new Set("a an and are by can did do does for how i in is it its me my of on or s should the to was were what which with".split(" "));
-const LATER = ["method", "comparison", "underspecified detail"];
+const LATER = ["method", "comparison", "assumption"];
 const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
