@@ -8,6 +8,7 @@ from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
     ArtefactView,
+    Citation,
     MethodView,
     PageJob,
     StudyView,
@@ -81,6 +82,7 @@ def _of_project(study: Study) -> bool:
 
 def _study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
+    paper = study.paper
     artefacts = {
         name: ArtefactView(
             study.artefact(name).title,
@@ -99,7 +101,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
     }
     return StudyView(
         title=study.title,
-        paper=study.paper,
+        paper=paper and Citation(paper.title, paper.where, paper.doi),
         labels=study.labels,
         methods={
             name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods

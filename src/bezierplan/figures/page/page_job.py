@@ -8,6 +8,15 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import TableEntry
 
 
+class Citation(NamedTuple):
+    """A paper as it is cited."""
+
+    title: str
+    where: str
+    """Journal and year, as far as known."""
+    doi: str | None
+
+
 class MethodView(NamedTuple):
     """A method of a study."""
 
@@ -45,8 +54,8 @@ class StudyView(NamedTuple):
     """A study of the page."""
 
     title: str
-    paper: Any
-    """Its title, where it appeared, and doi; None for a reader's own study."""
+    paper: Citation | None
+    """None for a reader's own study."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     methods: dict[str, MethodView]

@@ -301,47 +301,42 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
 
 
 def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
-    """Claims in their primary variant. Added: address, rule (what its count means), why,
-    comparisons, others (its other variants), shown_in.
-    """
+    """Claims in their primary variant, each with its other variants (`others`)."""
     if "claims" not in files:
         return []
     compared: dict[tuple, list[Row]] = {}
     for row in records(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
-    claims, there = [], content.tables.keys() | content.figures.keys()
     names = sentences.variants_named([*content.claims.values()], content.labels)
-    for _, rows in files["claims"].groupby("id", sort=False):
-        every = records(rows)
-        claim = next(row for row in every if row["primary"])
-        comparisons = compared.get((claim["id"], claim["variant"]), [])
-        described = content.claims.get(claim["id"])
-        checks = described.checks if described else []
-        for each in comparisons:
-            check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
-            each["reference"] = sentences.reference(check) if check else 0.0
-            each["name"] = sentences.title(each, check, content.labels)
-        claims.append(
-            claim
-            | {
-                "address": address(study, claim["id"]),
-                "rule": sentences.rule(described, claim["verdict"], claim["holds"]),
-                "why": _why(claim, comparisons, checks, content.labels),
-                "comparisons": comparisons,
-                "variant": names.get(claim["variant"] or "", ""),
-                "others": [
-                    row | {"variant": names.get(row["variant"], row["variant"])}
-                    for row in every
-                    if not row["primary"]
-                ],
-                "shown_in": [
-                    name
-                    for name in (claim["artefact"] or "").replace(",", " ").split()
-                    if name in there
-                ],
-            }
-        )
-    return claims
+    claims: dict[str, Row] = {}
+    others: dict[str, list[Row]] = {}
+    for row in records(files["claims"]):
+        if row["primary"]:
+            comparisons = compared.get((row["id"], row["variant"]), [])
+            named = {"variant": names.get(row["variant"] or "", "")}
+            claims[row["id"]] = _claim(study, row, comparisons, content) | named
+        else:
+            other = row | {"variant": names.get(row["variant"], row["variant"])}
+            others.setdefault(row["id"], []).append(other)
+    return [claim | {"others": others.get(name, [])} for name, claim in claims.items()]
+
+
+def _claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
+    """A claim. Added: address, rule (what its count means), why, comparisons, shown_in."""
+    described = content.claims.get(claim["id"])
+    checks = described.checks if described else []
+    for row in comparisons:
+        check = checks[row["check"] - 1] if row["check"] <= len(checks) else None
+        row["reference"] = sentences.reference(check) if check else 0.0
+        row["name"] = sentences.title(row, check, content.labels)
+    there = content.tables.keys() | content.figures.keys()
+    return claim | {
+        "address": address(study, claim["id"]),
+        "rule": sentences.rule(described, claim["verdict"], claim["holds"]),
+        "why": _why(claim, comparisons, checks, content.labels),
+        "comparisons": comparisons,
+        "shown_in": [name for name in (claim["artefact"] or "").split(", ") if name in there],
+    }
 
 
 def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]) -> str:
