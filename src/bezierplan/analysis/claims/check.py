@@ -137,7 +137,7 @@ class ClaimCheck(Model):
     @property
     def timed(self) -> bool:
         """Whether it is of seconds."""
-        return METRICS[self.metric].unit == "s"
+        return METRICS[self.metric or ""].unit == "s"
 
     @property
     def relative(self) -> bool:
