@@ -124,10 +124,8 @@ def test_what_is_declared_has_a_noun_for_a_name():
 
 
 def test_a_class_name_stands_for_one_thing():
-    """But for what each file of an interface has, which is found by the file's name, and for the
-    scenes of two searches of geometry, an edit of which repeats all runs.
-    """
-    shared = {"Options", "Settings", "Scene"}
+    """But for what each file of an interface has, which is found by the file's name."""
+    shared = {"Options", "Settings"}
     trees = [ast.parse(file.read_text(encoding="utf-8")) for file in SOURCE.rglob("*.py")]
     every = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
     borne = Counter(node.name for node in every if not node.name.startswith("_"))
