@@ -67,7 +67,7 @@ def content() -> tuple[SimpleNamespace, Path]:
     for key, study in page.studies.items():
         study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
-        study.verdict = following[key]
+        study.verdict = following[key].replace(" %", "\N{NO-BREAK SPACE}%")
         study.outcome = page.headline.papers.loc[key]
         study.picture = next(each for each in study.figures if each["name"] == PICTURES[key])
     return page, folder

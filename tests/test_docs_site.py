@@ -230,7 +230,17 @@ def tab(request, browser, address):  # noqa: F811
 
 # A question, what a reader clicks on from the site's home, and what is then in sight.
 CLICKS = [
+    ("is a paper right", [], "reproduced."),
     ("overall answer", [], "can be tested;"),
+    ("how long does it take", ["Which method should I use?"], "takes 1.4 to 1.8 ms"),
+    ("two methods on one map", ["Which method should I use?"], "A method plans on any map that"),
+    ("MGA's mutation", ["Which method should I use?", "MGA (Elhoseny 2017)"], "Mutation."),
+    (
+        "what is silent in Ma",
+        ["Ma 2020", "What the paper leaves open"],
+        "equation (12) cannot work",
+    ),
+    ("a map of Ma", ["Ma 2020", "Maps"], "environment2.txt"),
     ("what did you find about Tharwat 2018", ["Tharwat 2018"], "mean ranks show no difference"),
     ("may I cite it and how", ["May I cite it, and how?"], "@misc{bezierplan"),
     ("Table 2 of Elhoseny beside yours", ["Elhoseny 2017", "Table 2"], "Proposed Method"),
@@ -244,6 +254,8 @@ SEARCHES = {
     "MGA": "methods/modified_genetic.html",
     "BCA": "methods/bca.html",
     "which method should I use": "use.html",
+    "how long does it take": "use.html",
+    "compare two methods": "use.html",
     "Tharwat 2018": "papers/tharwat2018.html",
     "how to cite": "cite.html",
 }

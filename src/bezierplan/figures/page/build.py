@@ -156,6 +156,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
         "short": short,
         "heading": naming.heading,
+        "amount": naming.amount,
         "counts": counts,
         "packed": packed,
         "failing": answer.failing,
