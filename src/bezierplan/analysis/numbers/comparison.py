@@ -195,7 +195,8 @@ def decides_nothing(
     - A quantity that the paper does not define, or a map that it does not print (`on_open_map`, or
       one draw of a random one), decides nothing: our definition or our map may be wrong. How near
       such numbers are is told, and a path that has such a length is named. Where other maps are
-      declared, a number that lies outside on each of them disagrees all the same.
+      declared, a number that lies outside under every reading, whether of the map or of a method,
+      disagrees all the same.
     - A number to which something was fitted has no vote. votes: metric -> which numbers of the
       table have one (column -> value or list of values); None for a table to which nothing was
       fitted.

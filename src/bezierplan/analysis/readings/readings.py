@@ -379,9 +379,8 @@ def of_study(
             p = fit.p_of_fit(groups(quantities, results), generator(f"{study}/{name}/fit"))
             order = lowest_order(quantities, results)
             fits |= p >= LEAST_P and not why
-            moved = runner.moved(reading) if reading else on_open_maps
-            if moved and not why:
-                compared = compare({each: results[each] for each in moved})
+            if on_open_maps and not why:
+                compared = compare({each: results[each] for each in on_open_maps})
                 numbers.append(compared.assign(reading=name))
             if not why and (p >= LEAST_P or not fits):
                 verdicts.append(judge(results, among).assign(study=study, reading=name))
