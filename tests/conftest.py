@@ -5,6 +5,7 @@ every time.
 import gc
 import os
 import sys
+from functools import partial
 from pathlib import Path
 
 # What is imported until the tests begin is no garbage: see `pytest_collection_finish`.
@@ -83,10 +84,10 @@ def planners_are_read_here(monkeypatch: pytest.MonkeyPatch) -> None:
 
     answers = process.answers
 
-    def of_file_here(work: str, given: dict, *others: object) -> list:
-        if work == "guard.interface.described":
-            return [*interface.described(str, **given)]
-        return answers(work, given, *others)
+    def of_file_here(work: partial, *others: object) -> list:
+        if work.func is interface.described:
+            return [*work(str)]
+        return answers(work, *others)
 
     monkeypatch.setattr(process, "answers", of_file_here)
 

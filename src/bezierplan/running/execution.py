@@ -245,8 +245,8 @@ def run_chunk(
 
     A warm-up makes times comparable, and its runs must repeat themselves. A planner that never
     drew, and does not say so, is told on stderr. Raises PlannerFailure, naming the run, if a
-    planner fails, does not return a valid plan for the problem (`row`), changes a problem or a
-    world, or gives another plan when its first or last run is repeated.
+    planner fails, does not return a valid plan for the problem (`row`), or gives another plan when
+    its first or last run is repeated.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}

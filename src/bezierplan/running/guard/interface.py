@@ -8,7 +8,7 @@ stall the one that it is in.
 import copy
 import inspect
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -83,8 +83,9 @@ def traits(planner: str) -> Traits:
 @cache
 def _described(planner: str) -> Traits:
     """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
-    given = {"planner": str(Path(planner).resolve())}
-    (said,) = process.answers("guard.interface.described", given, "when it is imported", LIMIT)
+    file = str(Path(planner).resolve())
+    work = partial(described, planner=file)
+    (said,) = process.answers(work, file, "when it is imported", LIMIT)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)

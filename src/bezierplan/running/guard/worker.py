@@ -2,9 +2,9 @@
 their own, which is this file as a command (`guard`).
 """
 
-import importlib
 import json
 import os
+import pickle
 import resource
 import signal
 import sys
@@ -33,9 +33,9 @@ from bezierplan.running.jobs.watchdog import (
 from bezierplan.running.simulation import robot
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.words import told
-from bezierplan.workspaces import files, seeds
+from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
-from bezierplan.workspaces.worlds import World, from_json, to_json
+from bezierplan.workspaces.worlds import World
 
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
 """Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
@@ -185,55 +185,16 @@ def warm_up(once: Callable[[], Reply]) -> list[Reply]:
 # Work of processes of their own, whose answers are plain values
 
 
-def packed_problems(problems: dict[str, Problem]) -> dict[str, list[Any]]:
-    """Problems by name as plain values: name, workspace as text, start and target."""
-    return {
-        name: [each.name, files.to_json(each.workspace), each.start, each.target]
-        for name, each in problems.items()
-    }
-
-
-def unpacked_problems(content: dict[str, list[Any]]) -> dict[str, Problem]:
-    """The reverse; problems in one workspace share its object."""
-    workspaces = {text: files.from_json(text) for text in {each[1] for each in content.values()}}
-    return {
-        key: Problem(name, workspaces[text], tuple(start), tuple(target))
-        for key, (name, text, start, target) in content.items()
-    }
-
-
 def plain_answers(
-    begin: Callable[[str], None],
-    planner: str,
-    problems: dict[str, list[Any]],
-    function: str,
-    worlds: dict[str, str],
-    policy: dict[str, Any] | None,
-    tasks: list[list[Any]],
-    again: list[list[Any]],
-) -> Iterator[list[Any]]:
-    """`replies` as plain values."""
-    met, of_tasks = unpacked_problems(problems), [Task(*each) for each in tasks]
-    moving = {name: from_json(text) for name, text in worlds.items()}
-    work, name = Work(planner, met, function, moving, policy), ""
-    for number, found, *others in replies(work, of_tasks, [Task(*each) for each in again], begin):
-        name = of_tasks[number].name
-        with answer.of(name):
-            found = found if moving or function != "plan" else answer.plain(found)
-        yield [number, plain.packed(found), *others]
-    refuse_changed(problems, packed_problems(met), name)
-    refuse_changed(worlds, {key: to_json(world) for key, world in moving.items()}, name)
-
-
-def refuse_changed(before: dict[str, Any], after: dict[str, Any], name: str) -> None:
-    """Raise PlannerFailure, beginning with a name, for a problem that a planner has changed."""
-    # Plain values make no difference between lists and tuples.
-    for problem in before:
-        if json.dumps(before[problem]) != json.dumps(after[problem]):
-            raise PlannerFailure(
-                f"{name}: problem: {problem}: is another after the run; a planner copies what it "
-                "changes"
-            )
+    begin: Callable[[str], None], work: Work, tasks: Sequence[Task], again: Sequence[Task]
+) -> Iterator[Reply]:
+    """`replies` with plain values."""
+    for reply in replies(work, tasks, again, begin):
+        found = reply.result
+        with answer.of(tasks[reply.number].name):
+            if work.function == "plan" and not work.worlds:
+                found = answer.plain(found)
+        yield reply._replace(result=plain.packed(found))
 
 
 # --------------------------------------------------------------------------------------------------
@@ -244,12 +205,11 @@ def main(job_file: str, lines_file: str) -> None:
     """Do what a file says, and append lines to another one; then end, whatever a planner has left
     to do at an exit.
     """
-    job = json.loads(Path(job_file).read_text(encoding="utf-8"))
+    planner, name, work = pickle.loads(Path(job_file).read_bytes())
     end_with_parent()
     for name, most in LIMITS.items():
         with suppress(ValueError, OSError, AttributeError):  # not every system has each
             resource.setrlimit(getattr(resource, name), (most, most))
-    planner = job["given"]["planner"]
     opened = _opened(planner)
     with open(lines_file, "a", encoding="utf-8") as lines:
 
@@ -257,21 +217,17 @@ def main(job_file: str, lines_file: str) -> None:
             lines.write(f"{json.dumps({kind: value})}\n")
             lines.flush()
 
-        name = job["name"]
-
         def begin(run: str) -> None:
             nonlocal name
             name = run
             say("begins", run)
 
         try:
-            module, _, function = job["work"].rpartition(".")
-            work = getattr(importlib.import_module(f"bezierplan.running.{module}"), function)
-            for each in work(begin, **job["given"]):
+            for each in work(begin):
                 _refuse_left(name)
                 _refuse_opened(name, planner, opened)
                 say("answer", each)
-            say("took", cpu_time())
+            say("done", True)
         # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
         except BaseException as error:
             text = str(error) if isinstance(error, PlannerFailure) else f"{name}: {told(error)}"
