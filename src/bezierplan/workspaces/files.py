@@ -89,7 +89,8 @@ def from_json(text: str) -> Any:
     """The workspace that `to_json` wrote."""
     content = json.loads(text)
     unit, growth = content["unit"], _growth(content)
-    bounds, shapes = tuple(content.get("bounds", ())), None
+    bounds = tuple(content.get("bounds", ()))
+    shapes: Any = None
     if "circles" in content:
         table = np.array(content["circles"], dtype=float).reshape(-1, 3)
         shapes = Circles(bounds, table[:, :2], table[:, 2], unit, growth)
