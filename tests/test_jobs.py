@@ -45,8 +45,6 @@ def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
     [
         *((key, f"{key}: not a name of a study") for key in ("x[1]", "{scale}", "a b", "2016")),
         *((key, f"{key}: a target has this name already") for key in RULES),
-        ("song2016_table1", "song2016_table1: a target has this name already"),
-        ("song2016_beyond", "song2016_beyond: a target has this name already"),
         ("song2016", "has a study song2016 already, whose results this one would overwrite"),
     ],
 )

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import Field, create_model
 
 from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import ClaimCheck
@@ -27,7 +27,7 @@ from bezierplan.running.chunk import conditions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
-from bezierplan.schema.model import Model, fault_of, named, one_or_list
+from bezierplan.schema.model import Model, named, one_or_list, parsed
 from bezierplan.schema.words import told
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
@@ -348,19 +348,15 @@ class Checks:
 
     def arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
         """A function's keyword-only arguments are given, each as its annotation says."""
-        accepted = {
-            name: parameter.annotation
-            for name, parameter in inspect.signature(function).parameters.items()
-            if parameter.kind is parameter.KEYWORD_ONLY
-        }
-        check_all(arguments, accepted, "arguments")
-        for name, annotation in accepted.items():
-            if name not in arguments:
-                raise Fault(f"arguments: {name}: missing; {function.__name__} needs it")
-            try:
-                TypeAdapter(annotation).validate_python(arguments[name], strict=True)
-            except ValidationError as error:
-                raise fault_of(error, "arguments", name) from None
+        accepted = {}
+        for name, parameter in inspect.signature(function).parameters.items():
+            if parameter.kind is parameter.KEYWORD_ONLY:
+                wanted = inspect.formatannotation(parameter.annotation)
+                accepted[name] = (
+                    parameter.annotation,
+                    Field(description=f"{wanted}, as the function declares"),
+                )
+        parsed(create_model("Arguments", __base__=Model, **accepted), arguments, "arguments")
 
     # artefacts.yaml
 

@@ -91,15 +91,6 @@ class AssumptionEntry(Model):
                 f"default: {shown(self.default)}: expected none beside a setting, whose value "
                 "stands in experiments.yaml"
             )
-        if self.setting is None and self.model_fields_set & {
-            "methods",
-            "problems",
-            "along",
-        }:
-            raise wrong(
-                "setting: missing key; methods, problems and with need the planner's "
-                "setting that is governed"
-            )
         return self
 
 

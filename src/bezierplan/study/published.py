@@ -4,6 +4,7 @@ numbers fit the table that they are compared with.
 
 import csv
 import io
+import re
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -29,26 +30,22 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     names. Raises Fault, with file and line.
     """
     location = relative(file)
-    reader = csv.reader(io.StringIO(text_of(file, location), newline=""), strict=True)
+    reader = csv.DictReader(io.StringIO(text_of(file, location), newline=""), strict=True)
+    lines = {}
     try:
-        header, *rows = [(reader.line_num, row) for row in reader if row]
+        for row in reader:
+            lines[reader.line_num] = row
     except csv.Error as error:
-        raise Fault(f"{location}: line {reader.line_num}: not csv ({error})") from None
-    except ValueError:
-        rows = []
-    if not rows:
+        raise Fault(f"{location}: line {reader.reader.line_num}: not csv ({error})") from None
+    if not lines:
         raise Fault(f"{location}: line 1: expected a header of columns, and rows below it")
-    for number, column in enumerate(header[1]):
-        if column in header[1][:number] or not column.strip():
-            raise Fault(f"{location}: line 1: column {column}: expected a name, each once")
-    for number, row in rows:
-        if len(row) != len(header[1]):
-            raise Fault(
-                f"{location}: line {number}: {len(row)} values; "
-                f"expected {len(header[1])} values, one a column"
-            )
-    lines = {number: dict(zip(header[1], row)) for number, row in rows}
+    header = reader.fieldnames
+    if len({*header}) < len(header) or not all(header):
+        raise Fault(f"{location}: line 1: {', '.join(header)}: expected names, each once")
     for number, row in lines.items():
+        # What a row has too much stands under None, and None for what it lacks.
+        if None in [*row, *row.values()]:
+            raise Fault(f"{location}: line {number}: expected {len(header)} values, one a column")
         if row.keys() >= TIDY and row["value"] and not is_number(_read(row["value"])):
             raise Fault(f"{location}: line {number}: value: {row['value']!r}; expected a number")
     return lines
@@ -97,7 +94,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
             ("value", row["value"], "a number"),
             (
                 "n",
-                (row["n"].isdecimal() and row["n"] > "0") or not row["n"],
+                re.fullmatch("([1-9][0-9]*)?", row["n"]),
                 "how many runs the paper made",
             ),
             ("unit", row["unit"] == of_metric, f"{of_metric}, the unit of {row['metric']}"),

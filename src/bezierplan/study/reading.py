@@ -4,7 +4,6 @@ first job starts, and reported in one line (`checked.Fault`).
 
 import contextlib
 import hashlib
-import itertools
 import os
 import re
 import sys
@@ -60,19 +59,15 @@ def asked(folders: Folders, targets: Iterable[str]) -> Folders:
     """The studies that targets of the workflow belong to; all, unless each target is a study, or a
     rule or a file of one.
     """
-    names = [folder.resolve().name for folder in folders]
+    patterns = {
+        folder: f"(results/[^/]+/)?{re.escape(folder.resolve().name)}([_/]|$)" for folder in folders
+    }
     named = [
-        [
-            name
-            for name in names
-            if target == name
-            or target.startswith(f"{name}_")
-            or re.match(f"results/[^/]+/{re.escape(name)}/", target)
-        ]
+        {folder for folder, pattern in patterns.items() if re.match(pattern, target)}
         for target in targets
     ]
-    wanted = {*itertools.chain(*named)} if named and all(named) else names
-    return {folder: folders[folder] for folder, name in zip(folders, names) if name in wanted}
+    wanted = set().union(*named) if all(named) else set()
+    return {folder: folders[folder] for folder in folders if folder in wanted or not wanted}
 
 
 def _with_values(settings: Any) -> Any:
@@ -101,7 +96,7 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
         stamp = _stamp(folder, changed)
-        known = stamp and stamp.exists()
+        known = stamp.exists()
         if not known:
             _load_code(folder)
         study, faults, lost = _read(folder, changed)
@@ -112,10 +107,9 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
                 more = f" (with the configuration's settings: {changed})" if changed else ""
                 raise Fault(*(f"{line}{more}" for line in faults))
             # Without a place to keep it in, it is checked again.
-            if stamp and stamp == _stamp(folder, changed):
-                with contextlib.suppress(OSError):
-                    stamp.parent.mkdir(parents=True, exist_ok=True)
-                    stamp.touch()
+            with contextlib.suppress(OSError):
+                stamp.parent.mkdir(parents=True, exist_ok=True)
+                stamp.touch()
         if study.key in studies:
             raise Fault(
                 f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
@@ -125,16 +119,17 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     return studies
 
 
-def _stamp(folder: Path, changes: Mapping[str, Any]) -> Path | None:
-    """The file that says of a study that it was checked and had no fault; None if not all of its
-    folder can be read. Its name is a digest of all that a fault could come from: the files of the
-    study, the settings of a configuration, this package and its libraries.
+def _stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
+    """The file that says of a study that it was checked and had no fault. Its name is a digest of
+    all that a fault could come from: the files of the study, the settings of a configuration, this
+    package and its libraries.
     """
-    try:
-        parts = [repr(changes), *_package(), str(folder.resolve()), *_contents(folder)]
-    except OSError:
-        return None
+    parts = [repr(changes), *_package(), str(folder.resolve()), *_contents(folder)]
     return cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+
+
+_WRITTEN = frozenset(("__pycache__", "results", ".snakemake"))
+"""Folders that Python and the workflow write, where a study's folder is the working folder."""
 
 
 @cache
@@ -145,18 +140,15 @@ def _package() -> list[str]:
 
 
 def _contents(folder: Path) -> list[str]:
-    """All below a folder, but for byte code and what the workflow writes into its working folder:
-    names, where links lead, and digests of files. Raises OSError.
+    """All below a folder, but for what is written there: names, where links lead, and digests of
+    files.
     """
-    written = [os.path.realpath(name) for name in ("results", ".snakemake")]
     lines = []
     for path in sorted(folder.rglob("*")):
-        target = Path(os.path.realpath(path))
-        if "__pycache__" not in path.relative_to(folder).parts and not any(
-            map(target.is_relative_to, written)
-        ):
+        if _WRITTEN.isdisjoint(path.relative_to(folder).parts):
             content = path.read_bytes() if path.is_file() else b""
-            lines.append(f"{path} {target} {hashlib.sha256(content).hexdigest()}")
+            digest = hashlib.sha256(content).hexdigest()
+            lines.append(f"{path} {os.path.realpath(path)} {digest}")
     return lines
 
 
@@ -235,10 +227,8 @@ def check_names(studies: Mapping[str, Study]) -> None:
                 f"{location}: config/studies has a study {key} already, whose results this one "
                 "would overwrite; rename the folder"
             )
-        own = [key, *(f"{key}_{item}" for item in ("beyond", *study.tables, *study.figures))]
-        for target in targets.intersection(own):
-            raise Fault(f"{location}: {target}: a target has this name already; rename the folder")
-        targets.update(own)
+        if key in targets:
+            raise Fault(f"{location}: {key}: a target has this name already; rename the folder")
 
 
 def check_name(key: str, location: str) -> None:

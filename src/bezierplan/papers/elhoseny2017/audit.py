@@ -10,10 +10,9 @@ from bezierplan.analysis.audit.rows import checked, compared
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.papers.elhoseny2017.functions import (
     counts,
-    expected_length,
     printed_lengths,
-    radius_errors,
     said,
+    share_blocked,
     solutions,
 )
 from bezierplan.planners.parts.diversity import q_statistic
@@ -92,8 +91,7 @@ def _growth(published: "Published") -> Iterator[dict]:
     blocked_cells, tried = (
         each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields)
     )
-    radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
-    share = (expected_length(1, radius, blocked_cells.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
+    share = share_blocked(published, blocked_cells.index.to_numpy())
     rule = (
         f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
         "many of the printed can be such"
@@ -122,9 +120,8 @@ def _scatter(published: "Published") -> Iterator[dict]:
     """
     printed, fields = printed_lengths(published), int(published["table2"]["n"].iloc[0])
     wide = printed.pivot_table("value", ["side", "route"], "obstacles")
-    radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
     obstacles = wide.columns.to_numpy(dtype=float)
-    blocked = (expected_length(1, radius, obstacles) - DIAGONAL) / (2 - DIAGONAL)
+    blocked = share_blocked(published, obstacles)
     rng = generator("elhoseny2017/audit/scatter")
     drawn = rng.binomial(fields, blocked, (DRAWN, *wide.shape)) / fields
     ours, *sets = scatter(

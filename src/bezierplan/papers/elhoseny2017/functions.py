@@ -164,23 +164,21 @@ def printed_lengths(published: "Published") -> pd.DataFrame:
     return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
 
 
-def _error(printed: pd.DataFrame, side: int, radius: float) -> float:
-    """Mean absolute difference between printed and expected lengths for a side, as a share of their
-    mean.
-    """
-    own = printed[printed["side"] == side]
-    expected = expected_length(side, radius, own["obstacles"])
-    return float((own["value"] - expected).abs().mean() / own["value"].mean())
-
-
 def radius_errors(published: "Published") -> pd.DataFrame:
-    """The error of the expected lengths against the radius; columns: radius (a share of the side),
-    side, relative_error.
+    """The error of the expected lengths against the radius, as a share of their mean; columns:
+    radius (a share of the side), side, relative_error.
     """
-    printed = printed_lengths(published)
-    rows = [
-        (thousandths / 1000, side, _error(printed, side, thousandths / 1000))
-        for side in _sides(published).values()
-        for thousandths in range(5, 81)
-    ]
+    rows = []
+    for side, printed in printed_lengths(published).groupby("side"):
+        for radius in np.arange(5, 81) / 1000:
+            apart = printed["value"] - expected_length(side, radius, printed["obstacles"])
+            rows.append((radius, side, apart.abs().mean() / printed["value"].mean()))
     return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])
+
+
+def share_blocked(published: "Published", obstacles: np.ndarray) -> np.ndarray:
+    """The share (n,) of fields whose diagonal is blocked by some numbers of obstacles (n,), with
+    the radius that fits the printed lengths best.
+    """
+    radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
+    return (expected_length(1, radius, obstacles) - DIAGONAL) / (2 - DIAGONAL)
