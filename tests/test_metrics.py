@@ -65,12 +65,6 @@ def test_a_curve_has_no_corners_to_leave_out():
     assert math.isnan(value("spare_corners", "bezier", [(5, 5), (35, 5), (35, 35)]))
 
 
-def test_deviation_of_the_length_is_from_the_median_of_the_condition():
-    columns = {"experiment": ["e"] * 4, "condition": [*"aaab"], "method": ["m"] * 4}
-    found = values("deviation", **columns, feasible=[True] * 4, length=[90, 100, 120, 50])
-    assert found == about(0.1, 0.0, 0.2, 0.0)
-
-
 def test_infeasible_run_has_no_length_but_an_objective():
     table = {"objective": [3.0, 9.0], "length": [3.0, 2.0], "bound": [2.0, 2.0]}
     table |= {"feasible": [True, False]}

@@ -86,19 +86,6 @@ def first_generation_within(
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
-@metric(
-    "-",
-    "absolute deviation of the length from the median of its condition and method, relative",
-    feasible_only=True,
-)
-def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the length from the median of its method and
-    condition.
-    """
-    median = runs.groupby(["experiment", "condition", "method"])["length"].transform("median")
-    return (runs["length"] / median - 1).abs()
-
-
 @metric("-", "length / exact shortest length of the problem - 1", feasible_only=True, least=0.0)
 def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Length over the exact shortest length, minus 1 (n,)."""

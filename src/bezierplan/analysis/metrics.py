@@ -98,25 +98,22 @@ AT_LEAST_A_LENGTH = ("length", "objective")
 
 AT_LEAST_0 = {"least": 0.0}
 OF_COLUMNS: dict[str, dict[str, Any]] = {
-    "objective": {},
     "length": {"feasible_only": True, "least": "bound"},
-    "claimed_feasible": {},
-    "feasible": {},
-    "collision_depth": {},
-    "clearance": {},
-    "evaluations": AT_LEAST_0,
-    "generations": {},
-    "cpu_s": AT_LEAST_0,
-    "arrival": AT_LEAST_0 | {"feasible_only": True},
-    "hit_waiting": {},
-    "clearance_least": {},
-    "least_arrival": {},
+    "arrival": {"feasible_only": True} | AT_LEAST_0,
+}
+OF_COLUMNS |= {
+    name: {}
+    for name in (
+        *("objective", "claimed_feasible", "feasible", "collision_depth", "clearance"),
+        *("generations", "hit_waiting", "clearance_least", "least_arrival"),
+    )
 }
 OF_COLUMNS |= dict.fromkeys(
-    ["steps", "travelled", "replans", "waits", "collision_steps"], AT_LEAST_0
-)
-OF_COLUMNS |= dict.fromkeys(
-    ["replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"], AT_LEAST_0
+    [
+        *("evaluations", "cpu_s", "steps", "travelled", "replans", "waits", "collision_steps"),
+        *("replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"),
+    ],
+    AT_LEAST_0,
 )
 """Columns of `running.columns` that are metrics -> what else is known of these."""
 

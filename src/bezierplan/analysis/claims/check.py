@@ -49,39 +49,17 @@ class PublishedMargin(Model):
     )
 
 
-Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
-
 # Descriptions of keys shared by several kinds of check.
 EXPERIMENT = "the name of an experiment, or a list of at least two"
-PAIRED = (
-    "whether equal units are compared with each other, true or false; left out: as the "
-    "experiment is drawn"
-)
-SCALE = "absolute (left out: this), or relative to the value of the other group"
-MARGIN = (
-    "the smallest effect that matters: a number above 0, or {published: share}, that share of the "
-    "other group's value (the share itself for a metric that is true or false), or the printed "
-    "difference of the same cells if it is smaller"
-)
 WORK = (
     "the metric of counted work that is judged instead of seconds, which differ from machine "
     "to machine and are only reported"
-)
-TOGETHER = (
-    "true: a sentence such as `the best of all`, whose comparisons at one place (one combination "
-    "of `every`) make one mark: + if all "
-    "are +, - if any is -; they are shown as secondary ones; left out otherwise"
 )
 POOL = "a list of columns whose values are averaged with equal weight"
 GROUPS = (
     "a list of values of the column `across`; [rest] names the artefact's groups that are not named"
 )
 THAN = "a list of what the groups are compared with, each with each, such as [rest]"
-SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
-STATISTIC = (
-    "the statistic that is compared: rank (left out: this), mean, median, std, iqr, range, min or "
-    "max"
-)
 FAILURES = (
     "what a run without a feasible path counts: drop (left out: this), last (worse than any "
     "success; also runs that do not satisfy a "
@@ -226,16 +204,30 @@ class OfRuns(ClaimCheck):
         """The event whose share is taken, such as `below` and a number, if it is not the metric
         itself.
         """
-        return self.event.limit if self.event else None
+        return next(iter(self.event.items())) if self.event else None
 
 
-class Comparing(OfRuns):
+class WithMargin(OfRuns):
+    """Checks of an effect that may be too small to matter."""
+
+    scale: Literal["absolute", "relative"] = Field(
+        "absolute",
+        description="absolute (left out: this), or relative to the value of the other group",
+    )
+    margin: Annotated[Any, mapping_or(PublishedMargin, Positive)] = Field(
+        description="the smallest effect that matters: a number above 0, or {published: share}, "
+        "that share of the other group's value (the share itself for a metric that is true or "
+        "false), or the printed difference of the same cells if it is smaller"
+    )
+
+
+class Comparing(WithMargin):
     """Checks that compare groups."""
 
+    against: ClassVar[bool] = True
     cells_key: ClassVar[str | None] = "across"
 
     across: Column = Field(
         "method", description="the column whose values are the groups; left out: method"
     )
-    scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
-    margin: Margin = Field(description=MARGIN)
+    pool: Columns = Field([], description=POOL)

@@ -36,7 +36,6 @@ _EVENTS: dict[str, Callable] = {
     "above": np.greater,
     "at_most": np.less_equal,
     "at_least": np.greater_equal,
-    "equals": np.equal,
 }
 
 
@@ -107,8 +106,8 @@ class Finding(NamedTuple):
     effect: float = math.nan
     effect_size_name: str = ""
     effect_size: float = math.nan
-    low: float = math.nan
-    high: float = math.nan
+    low95: float = math.nan
+    high95: float = math.nan
     n: int = 0
     p: float = math.nan
     toward: int = 0

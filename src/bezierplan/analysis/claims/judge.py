@@ -138,8 +138,6 @@ def _summary(
         "where_it_holds": ""
         if everywhere
         else sentences.where_it_holds(judgements, material.study.labels),
-        "low95": finding.low,
-        "high95": finding.high,
         "counted": decisive.counted,
         "p_family": decisive.p_family,
         "reason": "; ".join(filter(None, reasons)),
@@ -284,34 +282,32 @@ def _reason(each: MarkedComparison) -> str:
 
 
 def _check_row(entry: MarkedComparison, material: Material) -> dict:
-    """A row of claim_checks.csv, whose columns leave out the rest of the finding."""
+    """A row of claim_checks.csv, whose columns leave out the rest of what is known."""
     check, finding = entry.check, entry.finding
     effect_published, agrees = _printed(entry)
-    return finding._asdict() | {
-        "check": entry.number,
-        "primary": entry.primary,
-        "test": check.test,
-        "experiments": ", ".join(check.experiments),
-        "metric": check.metric,
-        "statistic": check.statistic_shown,
-        "unit": _unit(check, material),
-        "scale": check.scale,
-        **entry.terms._asdict(),
-        "together": len(entry.parts) or None,
-        "place": json.dumps(
-            {key: getattr(at, "item", lambda at=at: at)() for key, at in entry.place}
-        ),
-        "mark": entry.mark,
-        "mark_family": entry.mark_family,
-        "counted": entry.counted,
-        "low95": finding.low,
-        "high95": finding.high,
-        "p_family": entry.p_family,
-        "effect_published": effect_published,
-        "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
-        "timed": check.timed,
-        "reason": _reason(entry),
-    }
+    return (
+        finding._asdict()
+        | entry._asdict()
+        | entry.terms._asdict()
+        | {
+            "check": entry.number,
+            "test": check.test,
+            "experiments": ", ".join(check.experiments),
+            "metric": check.metric,
+            "statistic": check.statistic_shown,
+            "unit": _unit(check, material),
+            "scale": check.scale,
+            "together": len(entry.parts) or None,
+            "place": json.dumps(
+                {key: getattr(at, "item", lambda at=at: at)() for key, at in entry.place}
+            ),
+            "counted": entry.counted,
+            "effect_published": effect_published,
+            "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
+            "timed": check.timed,
+            "reason": _reason(entry),
+        }
+    )
 
 
 def _unit(check: ClaimCheck, material: Material) -> str:

@@ -28,13 +28,6 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-EVENTS = {
-    "below": "below",
-    "above": "above",
-    "at_most": "at most",
-    "at_least": "at least",
-    "equals": "",
-}
 _TIMES = 2.0
 """Relative effects above this are given as multiples, not in per cent."""
 
@@ -210,7 +203,7 @@ def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
             f"{'this holds' if row['effect'] else 'this does not hold'}"
         )
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
-    needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
+    needed = needed or f"in {_plain(check.direction)} {100 * check.threshold:g} %"
     low, high = row["low95"], row["high95"]
     between = (
         ""
@@ -226,9 +219,9 @@ def _event(row: Row, check: share.Options) -> str:
     """What happens in a run that counts."""
     meaning = _quantity(row)
     if check.limit:
-        key, value = check.limit
+        word, value = check.limit
         unit = "" if str(row["unit"]) in meaning else _unit(row)
-        return " ".join(f"{meaning} is {EVENTS[key]} {value:g}{unit}".split())
+        return f"{meaning} is {_plain(word)} {value:g}{unit}"
     return (
         meaning.removeprefix("whether ")
         if meaning.startswith("whether ")
@@ -340,7 +333,7 @@ def less_than(deciding: Sequence[MarkedComparison], verdict: str, unit: str) -> 
     within = [each for each in deciding if each.mark_family == "0"]
     if verdict != "no effect" or not within:
         return ""
-    most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
+    most = max(max(abs(each.finding.low95), abs(each.finding.high95)) for each in within)
     relative = within[0].check.relative
     size = f"{100 * most:.2g} %" if relative else f"{most:.2g} {unit}".removesuffix(" -")
     where = (

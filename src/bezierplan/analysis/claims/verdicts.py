@@ -65,12 +65,15 @@ def among(finding: Finding, check: ClaimCheck, number: int) -> Finding:
 
     wider = stats.norm.ppf(ALPHA / 2 / number) / stats.norm.ppf(ALPHA / 2)
     low, high = (
-        finding.effect + wider * (end - finding.effect) for end in (finding.low, finding.high)
+        finding.effect + wider * (end - finding.effect) for end in (finding.low95, finding.high95)
     )
     least = SIDES.get(check.direction, 0) * check.least
     within = max(abs(low - least), abs(high - least)) <= finding.margin
     return finding._replace(
-        p=min(1.0, number * finding.p), low=low, high=high, negligible=finding.negligible and within
+        p=min(1.0, number * finding.p),
+        low95=low,
+        high95=high,
+        negligible=finding.negligible and within,
     )
 
 

@@ -9,21 +9,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import (
-    GROUPS,
-    POOL,
-    THAN,
-    Columns,
-    Comparing,
-    Groups,
-    with_itself,
-)
+from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, with_itself
 from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
@@ -33,9 +25,6 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    against: ClassVar[bool] = True
-
-    pool: Columns = Field([], description=POOL)
     groups: Groups = Field(description=GROUPS)
     than: Groups = Field(description=THAN)
     statistic: Literal["mean", "median", "min", "max"] = Field(

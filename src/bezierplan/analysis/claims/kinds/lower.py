@@ -21,24 +21,18 @@ import itertools
 import math
 import warnings
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims import effects, verdicts
 from bezierplan.analysis.claims.check import (
     FAILURES,
     GROUP_KEYS,
     GROUPS,
-    PAIRED,
-    POOL,
-    SIDE,
-    STATISTIC,
     THAN,
-    TOGETHER,
     WORK,
-    Columns,
     Comparing,
     Group,
     Groups,
@@ -57,10 +51,11 @@ EFFECT = effects.BETWEEN_GROUPS
 
 
 class Options(Comparing):
-    against: ClassVar[bool] = True
-
-    pool: Columns = Field([], description=POOL)
-    paired: Flag = Field(None, description=PAIRED)
+    paired: Flag = Field(
+        None,
+        description="whether equal units are compared with each other, true or false; left out: as "
+        "the experiment is drawn",
+    )
     groups: Groups = Field(None, description=GROUPS)
     than: Groups = Field(None, description=THAN)
     pairs: listed(listed(Group, least=2)) = Field(
@@ -71,14 +66,23 @@ class Options(Comparing):
         description="tiers, each on the claimed side of the next: a list of lists of groups, in "
         "place of groups and than",
     )
-    direction: Literal["lower", "higher"] = Field(description=SIDE)
+    direction: Literal["lower", "higher"] = Field(
+        description="lower or higher: how the groups, or the first tier, compare with the others"
+    )
     statistic: Literal["rank", "mean", "median", "std", "iqr", "range", "min", "max"] = Field(
-        "rank", description=STATISTIC
+        "rank",
+        description="the statistic that is compared: rank (left out: this), mean, median, std, "
+        "iqr, range, min or max",
     )
     least: Positive = Field(
         0, description="the claimed least effect, a number above 0; left out: any effect"
     )
-    together: Literal[True] = Field(None, description=TOGETHER)
+    together: Literal[True] = Field(
+        None,
+        description="true: a sentence such as `the best of all`, whose comparisons at one place "
+        "(one combination of `every`) make one mark: + if all are +, - if any is -; they are shown "
+        "as secondary ones; left out otherwise",
+    )
     work: Metric = Field(None, description=WORK)
     failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
 
@@ -164,10 +168,8 @@ def _without_p(finding: Finding) -> Finding:
     """The finding on two constants that differ, with the mark that its p gives, and no p: nothing
     varies by chance.
     """
-    side = {1: "+", -1: "-"}.get(finding.toward if finding.p < effects.ALPHA else 0)
-    mark = side or ("0" if finding.negligible else "?")
     reason = finding.reason or "both are constant, so there is no p"
-    return finding._replace(mark=mark, p=math.nan, reason=reason)
+    return finding._replace(mark=verdicts.mark(finding, finding.p), p=math.nan, reason=reason)
 
 
 def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:

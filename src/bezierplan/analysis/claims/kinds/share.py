@@ -32,37 +32,14 @@ class LowestRun(Model):
     lowest: Metric = Field(description="the name of a metric")
 
 
-class Event(Model):
-    """The event whose share is taken."""
-
-    below: Number = Field(None, description="a number")
-    above: Number = Field(None, description="a number")
-    at_most: Number = Field(None, description="a number")
-    at_least: Number = Field(None, description="a number")
-    equals: Number = Field(None, description="a number")
-
-    @model_validator(mode="after")
-    def _check_one(self) -> Event:
-        if len(self.model_fields_set) != 1:
-            raise wrong(
-                f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, "
-                "at_least, equals"
-            )
-        return self
-
-    @property
-    def limit(self) -> tuple[str, float]:
-        """How a value lies to which number."""
-        (word,) = self.model_fields_set
-        return word, getattr(self, word)
-
-
 class Options(OfRuns):
     pool: Columns = Field([], description=POOL)
-    event: Event = Field(
+    event: dict[Literal["below", "above", "at_most", "at_least"], Number] = Field(
         None,
-        description="one of {below: number}, above, at_most, at_least, equals; left out for a "
-        "metric that is true or false",
+        min_length=1,
+        max_length=1,
+        description="one of {below: number}, above, at_most, at_least; left out for a metric that "
+        "is true or false",
     )
     threshold: Annotated[
         Any,
@@ -101,7 +78,7 @@ class Options(OfRuns):
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
             raise wrong(
                 f"event: missing key; {self.metric} is no truth: expected one of below, above, "
-                "at_most, at_least, equals"
+                "at_most, at_least"
             )
         return self
 
@@ -151,7 +128,7 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     if check.pick:
         return finding._replace(mark="+" if _holds(check, finding) else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
-    finding = finding._replace(low=float(exact.low), high=float(exact.high))
+    finding = finding._replace(low95=float(exact.low), high95=float(exact.high))
     if isinstance(check.threshold, str):
         return _by_example(check, finding, comparison.paper_units)
     if n < LEAST_RUNS:
@@ -177,7 +154,7 @@ def _by_example(check: Options, finding: Finding, paper_units: int | None) -> Fi
     """
     if check.threshold == "as printed" and paper_units:
         low, chance, high = (
-            share**paper_units for share in (finding.low, finding.effect, finding.high)
+            share**paper_units for share in (finding.low95, finding.effect, finding.high95)
         )
         mark = "+" if low > effects.ALPHA else "-" if high < effects.ALPHA else "?"
         reason = f"the chance of {paper_units} of {paper_units} is {chance:.2g}"
@@ -202,7 +179,7 @@ def _share_of_conditions(
     toward = int(np.sign(side * (mean - threshold)))
     finding = finding._replace(effect=mean, effect_size=mean, n=len(shares), toward=toward)
     if not np.ptp(shares):
-        return finding._replace(low=mean, high=mean, p=0.0 if toward else 1.0)
+        return finding._replace(low95=mean, high95=mean, p=0.0 if toward else 1.0)
     test = stats.ttest_1samp(shares, threshold)
     low, high = (float(np.clip(end, 0, 1)) for end in test.confidence_interval(0.95))
-    return finding._replace(low=low, high=high, p=float(test.pvalue))
+    return finding._replace(low95=low, high95=high, p=float(test.pvalue))

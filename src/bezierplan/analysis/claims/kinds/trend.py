@@ -16,28 +16,25 @@ from pydantic import Field
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
+from bezierplan.analysis.claims.check import WORK, WithMargin
 from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
-from bezierplan.schema.model import Flag, Metric, NumberColumn
+from bezierplan.schema.model import Metric, NumberColumn
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-class Options(OfRuns):
+class Options(WithMargin):
     cells_key: ClassVar[str | None] = "x"
 
-    paired: Flag = Field(None, description=PAIRED)
     x: NumberColumn = Field(description="a column of numbers along which the metric changes")
     direction: Literal["up", "down"] = Field(description="up or down")
     statistic: Literal["std"] = Field(
         None, description="std: the spread of each condition; left out: the values themselves"
     )
-    scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
-    margin: Margin = Field(description=MARGIN)
     work: Metric = Field(None, description=WORK)
 
 
@@ -84,8 +81,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         reason = f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}"
         return Finding(n=n, mark="?", reason=reason)
     # A unit counts wherever it has a value, even if not at every x.
-    unpaired = comparison._replace(paired=False)
-    ours = effects.points(unpaired, statistic)
+    comparison = comparison._replace(paired=False)
+    ours = effects.points(comparison, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
         reference = ours[0] if check.relative else 1.0
@@ -102,7 +99,7 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         draws = effects.drawn_effects(check, comparison, name)
         p = effects.two_sided(draws)
     low, high = effects.interval(draws)
-    margin = effects.margin_of(check, unpaired)
+    margin = effects.margin_of(check, comparison)
     toward = int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change)))
     toward = 0 if abs(change) < margin else toward
     negligible = effects.is_negligible(low, high, margin, n)
