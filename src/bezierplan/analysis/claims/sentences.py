@@ -21,6 +21,7 @@ from bezierplan.analysis.claims.effects import MarkedComparison
 from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.naming import amount, column_name
+from bezierplan.analysis.numbers.baseline_comparison import number
 from bezierplan.schema.model import is_number, one_or_list
 
 if TYPE_CHECKING:
@@ -161,7 +162,7 @@ def _apart(row: Row, check: ClaimCheck) -> str:
     if not effect:
         return "equal to"
     if check.relative and effect > _TIMES:
-        return f"{_printed(1 + effect)} times"
+        return f"{number(1 + effect)} times"
     return f"{_size(row, check)} {_side(effect)} than"
 
 
@@ -233,7 +234,7 @@ def _function(row: Row, check: function.Options, names: PrintedTerms) -> str:
     """Of what a function of the study's own finds."""
     if row["effect"] is None:
         return f"{check.effect}: no value"
-    return f"{check.effect}: {_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
+    return f"{check.effect}: {number(row['effect'])}{_unit(row)}{_interval(row, check)}"
 
 
 def _effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
@@ -284,13 +285,8 @@ def _size(row: Row, check: ClaimCheck) -> str:
 def _amount(value: float, row: Row, check: ClaimCheck) -> str:
     """An effect with its unit; a relative one in per cent."""
     if check.relative:
-        return f"{_printed(100 * value)} %"
-    return amount(_printed(value), _unit(row).strip()).strip()
-
-
-def _printed(value: float) -> str:
-    """Three digits, without an exponent."""
-    return f"{float(f'{value:.3g}'):,.10g}"
+        return f"{number(100 * value)} %"
+    return amount(number(value), _unit(row).strip()).strip()
 
 
 def _interval(row: Row, check: ClaimCheck) -> str:
@@ -301,7 +297,7 @@ def _interval(row: Row, check: ClaimCheck) -> str:
         ends, unit = [1 + end for end in ends], " times"
     elif check.relative:
         ends, unit = [100 * end for end in ends], " %"
-    return f" (95 % interval {' to '.join(map(_printed, ends))}{unit})"
+    return f" (95 % interval {' to '.join(map(number, ends))}{unit})"
 
 
 def _margin(row: Row, check: ClaimCheck) -> str:
@@ -427,8 +423,8 @@ def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
     labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
     """
     sought = "+" if any(each.mark == "+" for each in comparisons) else "-"
-    number = sum(each.mark == sought for each in comparisons)
-    if number in (0, len(comparisons)):
+    held = sum(each.mark == sought for each in comparisons)
+    if held in (0, len(comparisons)):
         return ""
     factor = _best_factor(comparisons, sought)
     marks: dict[Any, list[bool]] = {}
@@ -442,7 +438,7 @@ def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
         if any(own) and not all(own)
     ]
     unknown = sum(each.mark == "?" for each in comparisons)
-    words += [] if factor else [f"in {number} of {len(comparisons)}"]
+    words += [] if factor else [f"in {held} of {len(comparisons)}"]
     words += [f"undecided in {unknown} of {len(comparisons)}"] if unknown else []
     return ("" if sought == "+" else "the contrary ") + "; ".join(words)
 

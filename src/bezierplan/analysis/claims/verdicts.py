@@ -43,7 +43,7 @@ def family(p: np.ndarray) -> np.ndarray:
     """p (n,) of a family, corrected by Benjamini and Hochberg's step-up procedure: (n,)."""
     from scipy import stats
 
-    return stats.false_discovery_control(p) if len(p) else p
+    return stats.false_discovery_control(p)
 
 
 def mark(finding: Finding, p: float) -> str:
