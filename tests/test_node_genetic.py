@@ -122,7 +122,6 @@ def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
     where = ENVIRONMENTS["env2_modified"]
     with_table = plan(where, mutation=mutation)
     monkeypatch.setattr(ground_of_cells, "TABLE_CELLS", 0)
-    ground_of.cache_clear()
     assert ground_of(where.workspace, 1.0).encounters.size == 0
     on_demand = plan(where, mutation=mutation)
     assert on_demand.history.tobytes() == with_table.history.tobytes()

@@ -57,6 +57,11 @@ def polygon(rings, role="obstacle"):
 EXPECTED = "geometry: expected a Polygon, a MultiPolygon"
 POLYGON_FAULTS = {
     "not JSON": ("{", "not GeoJSON"),
+    "a key twice": (
+        geojson().replace("{", '{"features": [], ', 1),
+        "features: this key is given tw",
+    ),
+    "an open ring": (geojson([SQUARE[:-1]]), "a ring begins at .* and ends at"),
     "a list": ("[]", "not GeoJSON: expected an object"),
     "role misspelt": (
         polygon([SQUARE], "obstacel"),

@@ -2,15 +2,12 @@
 
 import math
 from numbers import Real
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.workspaces.problem import Path
-
-if TYPE_CHECKING:
-    from scipy.interpolate import BPoly
 
 # Intervals of a piece's parameter on which arc length is summed, by quadrature of this order; then
 # Newton's method refines each parameter.
@@ -62,15 +59,12 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     >>> samples.x.round(9).tolist(), samples.y.round(9).tolist()
     ([0.0, 1.0, 2.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0, 1.0])
     """
-    from scipy.interpolate import BPoly
-
     if (n is None) == (step is None):
         raise ValueError("expected either n, a number of samples, or step, a distance between two")
     pieces = curves.bezier_pieces(path)
-    knots = np.linspace(0.0, len(pieces), _INTERVALS * len(pieces) + 1)
-    curve = BPoly(pieces.swapaxes(0, 1), np.arange(len(pieces) + 1))
-    velocity = curve.derivative()
-    speeds = _integral(velocity, knots[:-1], knots[1:])
+    knots = np.arange(_INTERVALS) / _INTERVALS
+    low = np.tile(knots, len(pieces))
+    speeds = _integral(np.repeat(pieces, _INTERVALS, axis=0), low, low + 1 / _INTERVALS)
     cumulative = np.concatenate([[0.0], np.cumsum(speeds)])
     length = cumulative[-1]
     if step is not None:
@@ -81,39 +75,66 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
     distance = np.linspace(0.0, length, n)
     interval = np.clip(np.searchsorted(cumulative, distance, side="right") - 1, 0, len(speeds) - 1)
-    low, high = knots[interval], knots[interval + 1]
+    piece, low = interval // _INTERVALS, knots[interval % _INTERVALS]
     rest = distance - cumulative[interval]
+    width = 1.0 / _INTERVALS
     share = np.divide(rest, speeds[interval], out=np.zeros(n), where=speeds[interval] > 0)
-    t = low + (high - low) * share
+    t = low + width * share
     for _ in range(_NEWTON_STEPS):
-        ran, rate = _integral(velocity, low, t), np.hypot(*velocity(t).T)
+        ran = _integral(pieces[piece], low, t)
+        rate = _speed(pieces[piece], t)
         change = np.divide(rest - ran, rate, out=np.zeros(n), where=rate > 0)
-        t = np.clip(t + change, low, high)
-    t[0], t[-1] = 0.0, len(pieces)
-    points = curve(t)
+        t = np.clip(t + change, low, low + width)
+    t[0], t[-1] = 0.0, 1.0
+    points = _values(pieces[piece], t)
     points[0], points[-1] = pieces[0, 0], pieces[-1, -1]
-    piece = np.minimum(t.astype(int), len(pieces) - 1)
-    direction = velocity(t)
-    size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))[piece]
-    still = np.hypot(*direction.T) <= curves.STANDSTILL * size
-    # There it is the direction to a point just ahead, or at a piece's end from one just behind.
-    ahead = np.where(t - piece < 0.5, 1e-3, 0.0)
-    direction[still] = (curve(t + ahead) - curve(t + ahead - 1e-3))[still]
-    direction[size == 0] = 0.0  # the whole piece is one place: no rounding error is a heading
-    curvature, _ = curves.curvatures(pieces[piece], t - piece)
     return Samples(
         distance,
         points[:, 0],
         points[:, 1],
-        np.arctan2(direction[:, 1], direction[:, 0]),
-        np.nan_to_num(curvature),
+        _headings(pieces[piece], t),
+        _curvatures(pieces[piece], t),
     )
 
 
-def _integral(velocity: "BPoly", low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Arc length (n,) between two parameters each (n,), from the derivative of a curve."""
+def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Arc length (n,) of pieces (n, degree + 1, 2) between two parameters each (n,)."""
     half = (high - low) / 2
     total = np.zeros(len(low))
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-        total += weight * np.hypot(*velocity(low + half * (node + 1)).T)
+        total += weight * _speed(pieces, low + half * (node + 1))
     return half * total
+
+
+def _values(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    return np.einsum("sk,skd->sd", curves.bernstein(pieces.shape[1] - 1, t), pieces)
+
+
+def _derivatives(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    degree = pieces.shape[1] - 1
+    return degree * _values(np.diff(pieces, axis=1), t)
+
+
+def _speed(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    return np.hypot(*_derivatives(pieces, t).T)
+
+
+def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Direction of travel (n,); where the curve stands still, that to a point just ahead, or at a
+    piece's end from one just behind.
+    """
+    direction = _derivatives(pieces, t)
+    size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))
+    still = np.hypot(*direction.T) <= curves.STANDSTILL * size
+    if still.any():
+        ahead = np.where(t < 0.5, t + 1e-3, t)
+        behind = np.where(t < 0.5, t, t - 1e-3)
+        direction[still] = (_values(pieces, ahead) - _values(pieces, behind))[still]
+        direction[size == 0] = 0.0  # the whole piece is one place: no rounding error is a heading
+    return np.arctan2(direction[:, 1], direction[:, 0])
+
+
+def _curvatures(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    if pieces.shape[1] == 2:
+        return np.zeros(len(t))
+    return np.nan_to_num(curves.curvatures(pieces, t)[0])

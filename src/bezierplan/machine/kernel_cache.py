@@ -10,6 +10,7 @@ always do.
 import contextlib
 import fcntl
 import gc
+import inspect
 import logging
 import math
 import time
@@ -55,23 +56,13 @@ class _Locator(_CacheLocator):
     other modules are compiled into it; and it recompiles after an edit of a comment.
     """
 
-    def __init__(self, py_func: FunctionType, py_file: str) -> None:
-        self._py_file = py_file
-        self._folder = kernel_folder(py_func.__module__, py_file)
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._py_file = inspect.getfile(py_func)
+        self._folder = folder
         # Nested functions can share a name.
         self._disambiguator = (
             str(py_func.__code__.co_firstlineno) if "<locals>" in py_func.__qualname__ else "0"
         )
-
-    @classmethod
-    def from_function(cls, py_func: FunctionType, py_file: str) -> "_Locator | None":
-        """That of a function, or None where no folder can be written."""
-        locator = cls(py_func, py_file)
-        try:
-            locator.ensure_cache_path()
-        except OSError:
-            return None
-        return locator
 
     def get_cache_path(self) -> str:
         """The folder."""
@@ -107,26 +98,42 @@ class _File(IndexDataCacheFile):
 
 
 class _Implementation(CompileResultCacheImpl):
-    """How the cache names a kernel's files."""
+    """How the cache names a kernel's files, for the folder that is given instead of one that numba
+    looks for.
+    """
 
-    _locator_classes: ClassVar[list[type]] = [_Locator]
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._lineno = py_func.__code__.co_firstlineno
+        self._locator = _Locator(py_func, folder)
+        name = f"{Path(inspect.getfile(py_func)).stem}.{py_func.__qualname__}"
+        self._filename_base = self.get_filename_base(name, "")
 
 
 class KernelCache(FunctionCache):
-    """The compiled forms of one kernel, in the folder of its module. Raises RuntimeError where
-    that cannot be written.
-    """
+    """The compiled forms of one kernel, in the folder of its module."""
 
-    _impl_class = _Implementation
-
-    def __init__(self, py_func: FunctionType) -> None:
-        super().__init__(py_func)
-        stamp = self._impl.locator.get_source_stamp()
-        self._cache_file = _File(self._cache_path, self._impl.filename_base, stamp)
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._name, self._py_func = repr(py_func), py_func
+        self._impl = _Implementation(py_func, folder)
+        self._cache_path = str(folder)
+        self._cache_file = _File(self._cache_path, self._impl.filename_base, folder.name)
+        self.enable()
 
     def keeps(self, signature: Any, codegen: Any) -> bool:
         """Whether the kernel is kept for a signature."""
         return self._index_key(signature, codegen) in self._cache_file._load_index()
+
+
+@cache
+def _can_be_written(folder: Path) -> bool:
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        # numba's own test: a folder can have the mode of one that can be written, and be none.
+        import tempfile
+
+        tempfile.TemporaryFile(dir=folder).close()
+        return True
+    return False
 
 
 class Kernel(CPUDispatcher):
@@ -139,8 +146,9 @@ class Kernel(CPUDispatcher):
 
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
-        with contextlib.suppress(RuntimeError):
-            self._cache = KernelCache(self.py_func)
+        folder = kernel_folder(self.py_func.__module__, inspect.getfile(self.py_func))
+        if _can_be_written(folder):
+            self._cache = KernelCache(self.py_func, folder)
 
     def compile(self, sig: Any) -> Any:
         """Load the kernel, or compile and keep it, for one process at a time where it has to

@@ -5,7 +5,6 @@ text for tables.
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -47,31 +46,55 @@ def to_json(workspace: Workspace) -> str:
     """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
     circles, whatever the number of its cells.
     """
-    cells = isinstance(workspace, Grid)
-    shapes = workspace.shapes if isinstance(workspace, Grid) else workspace
-    kind, content = "grid", _growth_content(workspace.growth)
-    if isinstance(shapes, Circles):
-        table = np.column_stack([shapes.centres, shapes.radii]).tolist()
-        kind = "random_field" if cells else "circles"
-        content |= {"bounds": shapes.bounds, "circles": table}
-    if isinstance(shapes, Polygons):
-        obstacles = [[ring.tolist() for ring in rings] for rings in shapes.obstacles]
-        kind = "raster" if cells else "polygons"
-        content |= {"bounds": shapes.bounds, "obstacles": obstacles}
-        content |= _growth_content(shapes.growth)
-    if isinstance(workspace, Grid) and not isinstance(shapes, Circles):
-        content |= {"cell": workspace.cell, "rows": grid.to_lines(workspace)}
-        content["origin"] = workspace.origin
+    if isinstance(workspace, Grid) and isinstance(workspace.shapes, Circles):
+        content = _circles_content(workspace.shapes) | {"kind": "random_field"}
+    elif isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
+        cells = {
+            "cell": workspace.cell,
+            "rows": grid.to_lines(workspace),
+            "origin": workspace.origin,
+        }
+        content = _polygons_content(workspace.shapes) | cells | {"kind": "raster"}
+    elif isinstance(workspace, Grid):
+        content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
+        if workspace.origin != (0.0, 0.0):
+            content["origin"] = workspace.origin
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
-    return json.dumps({"kind": kind, "unit": workspace.unit} | content)
+        content |= _growth_content(workspace.growth)
+    elif isinstance(workspace, Circles):
+        content = _circles_content(workspace)
+    else:
+        content = _polygons_content(workspace)
+    return json.dumps(content | {"unit": workspace.unit})
+
+
+def _polygons_content(polygons: Polygons) -> dict:
+    obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
+    return {
+        "kind": "polygons",
+        "bounds": polygons.bounds,
+        "obstacles": obstacles,
+    } | _growth_content(polygons.growth)
+
+
+def _circles_content(circles: Circles) -> dict:
+    table = np.column_stack([circles.centres, circles.radii]).tolist()
+    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _growth_content(
+        circles.growth
+    )
 
 
 def _growth_content(growth: Growth | None) -> dict:
     if growth is None:
         return {}
-    centres, original = growth.centres.tolist(), to_json(growth.original)
-    return {"grown": {"radius": growth.radius, "original": original, "centres": centres}}
+    return {
+        "grown": {
+            "radius": growth.radius,
+            "original": to_json(growth.original),
+            "centres": growth.centres.tolist(),
+        }
+    }
 
 
 def _growth(content: dict) -> Growth | None:
@@ -85,26 +108,29 @@ def _growth(content: dict) -> Growth | None:
     )
 
 
-def from_json(text: str) -> Any:
+def from_json(text: str) -> Workspace:
     """The workspace that `to_json` wrote."""
     content = json.loads(text)
-    unit, growth = content["unit"], _growth(content)
-    bounds = tuple(content.get("bounds", ()))
-    shapes: Any = None
-    if "circles" in content:
-        table = np.array(content["circles"], dtype=float).reshape(-1, 3)
-        shapes = Circles(bounds, table[:, :2], table[:, 2], unit, growth)
-    if "obstacles" in content:
+    unit = content["unit"]
+    if content["kind"] == "grid":
+        flat = replace(
+            grid.from_lines(content["rows"], content["cell"], unit),
+            origin=tuple(content.get("origin", (0.0, 0.0))),
+            growth=_growth(content),
+        )
+        return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
+    bounds = tuple(content["bounds"])
+    if content["kind"] in ("polygons", "raster"):
         obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-        shapes = Polygons(bounds, obstacles, unit, growth)
-    if content["kind"] == "random_field":
-        return random_field.from_circles(shapes)
-    if "rows" not in content:
-        return shapes
-    return replace(
-        grid.from_lines(content["rows"], content["cell"], unit),
-        origin=tuple(content["origin"]),
-        shapes=shapes,
-        heights=np.array(content["heights"]) if "heights" in content else None,
-        growth=None if shapes else growth,
-    )
+        polygons = Polygons(bounds, obstacles, unit, _growth(content))
+        if content["kind"] == "polygons":
+            return polygons
+        cells = grid.from_lines(content["rows"], content["cell"], unit)
+        return replace(
+            cells,
+            origin=tuple(content["origin"]),
+            shapes=polygons,
+        )
+    table = np.array(content["circles"], dtype=float).reshape(-1, 3)
+    circles = Circles(bounds, table[:, :2], table[:, 2], unit, _growth(content))
+    return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

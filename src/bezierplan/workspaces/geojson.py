@@ -20,8 +20,7 @@ from bezierplan.schema.checked import closest
 from bezierplan.workspaces.limits import (
     SMALLEST_ANGLE,
     SMALLEST_GAP,
-    Bounds,
-    bounds_of,
+    check_bounds,
     check_gaps,
     check_numbers,
     check_thickness,
@@ -34,6 +33,8 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 ROLES = ("border", "obstacle", "start", "target")
+
+Bounds = tuple[float, float, float, float]
 
 
 class Shape(NamedTuple):
@@ -80,7 +81,7 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
 
 def _content(text: str) -> dict[str, Any]:
     try:
-        content = json.loads(text)
+        content = json.loads(text, object_pairs_hook=_object)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"not GeoJSON ({error})") from None
     if not isinstance(content, dict):
@@ -88,6 +89,16 @@ def _content(text: str) -> dict[str, Any]:
     named = str(content.get("crs")).upper()
     if any(name in named for name in ("CRS84", "4326", "WGS84", "WGS 84")):
         raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths")
+    return content
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object of a file. Raises ValueError for a key that is given twice: one would be lost."""
+    content: dict[str, Any] = {}
+    for key, entry in pairs:
+        if key in content:
+            raise ValueError(f"{key}: this key is given twice")
+        content[key] = entry
     return content
 
 
@@ -128,6 +139,7 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
             f"{name}: geometry: expected a Polygon, a MultiPolygon, or a GeometryCollection of "
             "these, of rings of [x, y] or of [x, y, height]"
         )
+    _check_rings(feature["geometry"], name)
     for polygon in polygons:
         check_numbers(shapely.get_coordinates(polygon), name)
         if not polygon.is_valid:
@@ -141,6 +153,20 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
             if angles.min() < SMALLEST_ANGLE:
                 raise ValueError(f"{name}: an angle below {SMALLEST_ANGLE:g} rad")
         yield Shape(name, role, polygon)
+
+
+def _check_rings(geometry: dict[str, Any], name: str) -> None:
+    """Raise ValueError for a ring that does not end where it begins: a position may be missing."""
+    for part in geometry.get("geometries", []):
+        _check_rings(part, name)
+    rings = geometry.get("coordinates", [])
+    if geometry["type"] == "MultiPolygon":
+        rings = [ring for polygon in rings for ring in polygon]
+    for first, *_, last in rings:
+        if first != last:
+            raise ValueError(
+                f"{name}: a ring begins at {first} and ends at {last}; expected the same position"
+            )
 
 
 def _border(
@@ -168,8 +194,9 @@ def _border(
                 "no border; expected a polygon with role border, "
                 "a bbox of [x low, y low, x high, y high], or a margin around the obstacles"
             ) from None
-    check_numbers(np.append(low, high), "the border")
-    limits = bounds_of((low[0], high[0], low[1], high[1]))
+    limits = float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    check_numbers(np.array(limits), "the border")
+    check_bounds(limits)
     beyond = [shapely.box(*low, *high).difference(shape.polygon) for shape in borders]
     return limits, [
         Shape(f"{borders[0].name}: outside of it", "obstacle", part)

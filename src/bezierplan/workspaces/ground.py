@@ -48,30 +48,49 @@ class Ground(NamedTuple):
     energy: np.ndarray
 
 
-@lru_cache(maxsize=8)
 def ground_of(grid: Grid, friction: float, closed: bool = False) -> Ground:
     """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do
     not modify the result.
     """
-    heights = np.empty((0, 0)) if grid.heights is None else grid.heights / grid.cell
-    bare = Ground(
-        grid.occupied.copy(),
+    return _ground(*_key(grid, friction, closed))
+
+
+def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
+    """The energy of `cheapest` on the ground of a grid, cached."""
+    return _least_energy(_key(grid, friction, closed), start, target)
+
+
+def _key(grid: Grid, friction: float, closed: bool) -> tuple:
+    """What determines the ground of a grid, so that it is built once per map."""
+    heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
+    return (
+        grid.occupied.shape,
+        grid.occupied.tobytes(),
         heights,
         float(friction),
         closed,
-        np.empty((0, 0), dtype=np.uint16),
-        np.empty((0, 0)),
+        TABLE_CELLS,
     )
-    if grid.occupied.size > TABLE_CELLS:
+
+
+@lru_cache(maxsize=8)
+def _ground(
+    shape: tuple[int, int],
+    occupied: bytes,
+    heights: bytes,
+    friction: float,
+    closed: bool,
+    table_cells: int,
+) -> Ground:
+    cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
+    above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
+    bare = Ground(
+        cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0))
+    )
+    if cells.size > table_cells:
         return bare
     encounters, energy = _tables(bare)
     return bare._replace(encounters=encounters, energy=energy)
-
-
-@lru_cache(maxsize=64)
-def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
-    """The energy of `cheapest` on the ground of a grid."""
-    return cheapest(ground_of(grid, friction, closed), start, target)[0]
 
 
 @compiled
@@ -162,6 +181,11 @@ def _passed(ground, start, end):
         if ground.heights.size:
             climb += max(ground.heights[row, column] - height, 0.0)
     return encounters, climb
+
+
+@lru_cache(maxsize=64)
+def _least_energy(key: tuple, start: int, target: int) -> float:
+    return cheapest(_ground(*key), start, target)[0]
 
 
 def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:

@@ -1,11 +1,6 @@
 """Limits on the coordinates of a workspace, whatever kind of file they come from."""
 
-from collections.abc import Iterable
-
 import numpy as np
-
-Bounds = tuple[float, float, float, float]
-"""Lowest and highest x, lowest and highest y, in units."""
 
 LARGEST = 1e5
 """Largest size of a coordinate, in units: beyond it the checker could not keep its tolerance."""
@@ -47,7 +42,7 @@ def check_cells(rows: int, columns: int) -> None:
         raise ValueError(f"{rows:,} x {columns:,} cells; expected at most {MOST_CELLS:,}")
 
 
-def check_bounds(bounds: Bounds) -> None:
+def check_bounds(bounds: tuple[float, float, float, float]) -> None:
     """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below
     high by `SMALLEST_FEATURE`.
     """
@@ -58,13 +53,6 @@ def check_bounds(bounds: Bounds) -> None:
     check_thickness(
         min(bounds[1] - bounds[0], bounds[3] - bounds[2]), f"bounds: {list(bounds)}: side"
     )
-
-
-def bounds_of(numbers: Iterable[float]) -> Bounds:
-    """Bounds from numbers of a description. Raises ValueError as `check_bounds`."""
-    left, right, bottom, top = map(float, numbers)
-    check_bounds((left, right, bottom, top))
-    return left, right, bottom, top
 
 
 def check_thickness(size: float, where: str) -> None:

@@ -116,16 +116,45 @@ def positions(centres, velocities, walls, step):
 
 def to_json(world: World) -> str:
     """A world as text; `from_json` restores it bit by bit."""
-    content = dict(vars(world))
     if isinstance(world, ChangingCells):
-        content["maps"] = [files.to_json(each) for each in world.maps]
-    return json.dumps(content, default=np.ndarray.tolist)
+        content = {
+            "maps": [files.to_json(each) for each in world.maps],
+            "moments": world.moments.tolist(),
+        }
+    else:
+        table = np.column_stack([world.centres, world.velocities, world.radii]).tolist()
+        content = {
+            "bounds": world.bounds,
+            "walls": world.walls,
+            "circles": table,
+            "seen": world.view,
+            "unit": world.unit,
+        }
+    return json.dumps(content | {"pace": world.pace, "end": world.end})
 
 
 def from_json(text: str) -> World:
     """The world that `to_json` wrote."""
     content = json.loads(text)
     if "maps" in content:
-        content["maps"] = tuple(map(files.from_json, content["maps"]))
-        return ChangingCells(**content)
-    return MovingCircles(**content | {name: tuple(content[name]) for name in ("bounds", "walls")})
+        maps = tuple(map(_grid_from_json, content["maps"]))
+        return ChangingCells(maps, np.array(content["moments"]), content["pace"], content["end"])
+    table = np.array(content["circles"], dtype=float).reshape(-1, 5)
+    return MovingCircles(
+        bounds=tuple(content["bounds"]),
+        walls=tuple(content["walls"]),
+        centres=table[:, :2],
+        velocities=table[:, 2:4],
+        radii=table[:, 4],
+        view=content["seen"],
+        pace=content["pace"],
+        end=content["end"],
+        unit=content["unit"],
+    )
+
+
+def _grid_from_json(text: str) -> Grid:
+    """The map that `files.to_json` wrote."""
+    workspace = files.from_json(text)
+    assert isinstance(workspace, Grid)  # the cells of a world change
+    return workspace

@@ -11,7 +11,6 @@ from pydantic import Field
 from bezierplan.schema.model import Number
 from bezierplan.workspaces import moving
 from bezierplan.workspaces.kinds import REFLECTED, Bounds, World, of_length
-from bezierplan.workspaces.limits import bounds_of
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
@@ -32,7 +31,7 @@ class Options(World):
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
     """The circles that a description lists."""
-    walls = bounds_of(description["bounds"])
+    walls = moving.walls_of(description["bounds"])
     table = np.array(description["circles"], dtype=float).reshape(-1, 5)
     centres, radii, velocities = table[:, :2].copy(), table[:, 2].copy(), table[:, 3:].copy()
     low, high = np.reshape(walls, (2, 2)).T

@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.schema.model import NotNegative, Positive, is_number, value
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
-from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of
+from bezierplan.workspaces.limits import SMALLEST_FEATURE, check_bounds
 from bezierplan.workspaces.random_field import random_centres
 from bezierplan.workspaces.seeds import generator
 
@@ -48,6 +48,7 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     """The first so many circles of a layout. Raises ValueError for bounds without room, and if no
     free place is found.
     """
+    check_bounds(_bounds(description))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     if problem["obstacles"] > description["circles"]:
         raise ValueError(
@@ -65,7 +66,7 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(name, number)
-    bounds = within = bounds_of(description["bounds"])
+    bounds = within = _bounds(description)
     origin, axes, places = np.zeros(2), np.eye(2), np.array(ends)
     if width := description.get("corridor"):
         # Centres are drawn in coordinates along and across the straight line.
@@ -80,6 +81,11 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
         centres.append(random_centres(rng, 1, within, places, radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
+
+
+def _bounds(description: dict) -> tuple[float, float, float, float]:
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    return x_low, x_high, y_low, y_high
 
 
 def first(circles: Circles, count: int) -> Circles:

@@ -10,7 +10,6 @@ from pydantic import Field
 
 from bezierplan.workspaces import moving
 from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving, Size
-from bezierplan.workspaces.limits import bounds_of
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free
     place is found.
     """
-    walls = bounds_of(description["bounds"])
+    walls = moving.walls_of(description["bounds"])
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, *ends, problem["layout"])
     radius, count = description["radius"], problem["obstacles"]
