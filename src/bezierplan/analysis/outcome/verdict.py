@@ -22,6 +22,8 @@ from bezierplan.schema.model import Model, matching, parsed, wrong
 TAKES = {
     "min": pd.Series.min,
     "max": pd.Series.max,
+    "mean": pd.Series.mean,
+    "median": pd.Series.median,
     "sum": pd.Series.sum,
     "count": len,
     "only": pd.Series.item,
