@@ -125,10 +125,6 @@ ENDS = {
         "history = history.tolist()",
         "circles: open: its answer: history: expected an array",
     ),
-    "another problem": (
-        'object.__setattr__(problem.workspace, "bounds", (0.0, 9.0, 0.0, 9.0))',
-        "problem: circles: open: is another after the run",
-    ),
     "processes": (
         "import subprocess; subprocess.Popen(['sleep', '60'])",
         f"circles: open: {watchdog.LEFT}",

@@ -145,6 +145,9 @@ class Pivot(TableEntry):
         description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
         min_length=1,
     )
+    labels: dict[Line, Line] = Field(
+        {}, description="name → how this table prints it, where that differs from the study's label"
+    )
     published: PublishedFile = Field(
         None,
         description="a file in the study's folder `published` to compare with: letters, digits, _ "

@@ -376,9 +376,10 @@ class Checks:
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
         own = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
-        for name in study.labels.keys() - words:
-            near = difflib.get_close_matches(name, own)
-            check_known(name, near or words, "labels")
+        for each in (study, *study.tables.values()):
+            for name in getattr(each, "labels", {}).keys() - words:
+                near = difflib.get_close_matches(name, own)
+                check_known(name, near or words, "labels")
 
     def figure(self, name: str, figure: Figure) -> None:
         """Its panels' names exist."""

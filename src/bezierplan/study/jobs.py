@@ -180,7 +180,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     """
     spec = study.artefact(artefact)
     layout = study.layout.get(artefact)
-    printed = layout.names if layout else {}
+    printed = getattr(spec, "labels", {}) | (layout.names if layout else {})
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
@@ -208,7 +208,7 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     file = study.published_file(table)
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
-        spec=spec.but(title=table, note=None, monotone=[], where=where),
+        spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=labels_of(study, table),
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
@@ -390,7 +390,7 @@ def readings(study: Study, scale: str) -> Readings:
 def audit(study: Study, scale: str) -> Audit:
     """The audit of a study."""
     tables = {
-        Path(each.published).stem: each.but(title=name, note=None)
+        Path(each.published).stem: each.but(title=name, note=None, labels={})
         for name, each in study.with_published().items()
     }
     return Audit(

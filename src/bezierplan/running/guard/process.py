@@ -141,18 +141,18 @@ def _log(printed: Path, name: str) -> None:
 
 def _read(lines: Path, name: str, end: str) -> list[Any]:
     """The answers among the lines of a process. Raises PlannerFailure."""
-    found = []
+    replies = []
     # What follows the last line break was cut off.
     for line in lines.read_text(encoding="utf-8").split("\n")[:-1]:
         ((kind, value),) = json.loads(line).items()
         if kind == "begins":
             name = value
         elif kind == "answer":
-            found.append(value)
+            replies.append(value)
         elif kind == "fails":
             failure = PlannerFailure(value[0])
             failure.add_note(value[1])
             raise failure
         else:
-            return found
+            return replies
     raise PlannerFailure(f"{name}: {end}")
