@@ -17,6 +17,7 @@ import yaml
 from bezierplan.analysis import study_code
 from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import studies_of
+from bezierplan.commands.outcome import named
 from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
@@ -31,7 +32,7 @@ PICTURES = {
     "tharwat2018": "figure15",
     "meledje": "figure4",
 }
-"""The figure of each paper that shows what it is about."""
+"""The figure of each paper that shows what it is about; of another study, its first."""
 
 
 def results() -> tuple[str, Path]:
@@ -61,15 +62,15 @@ def content() -> tuple[SimpleNamespace, Path]:
             evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
         )
         tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
-        files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
-        following = outcome.following(OUTCOME, files, *tables)
+        following = outcome.following(OUTCOME, named(studies)[1], *tables)
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
         study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key].replace(" %", "\N{NO-BREAK SPACE}%")
         study.outcome = page.headline.papers.loc[key]
-        study.picture = next(each for each in study.figures if each["name"] == PICTURES[key])
+        of_name = {figure["name"]: figure for figure in study.figures}
+        study.picture = of_name.get(PICTURES.get(key), study.figures[0])
     return page, folder
 
 

@@ -82,7 +82,12 @@ CHECK |= {
     "unit": "unit",
     "place": json.dumps({"problem": "p"}),
 }
-LEVEL = {"study": "one", "table": "table1", "place": f"problem={HOSTILE}", "metric": "length"}
+LEVEL = {
+    "study": "one",
+    "table": "table1",
+    "place": json.dumps({"problem": HOSTILE}),
+    "metric": "length",
+}
 LEVEL |= {"quantity": "level", "printed": 10.5, "in_range": True, "why": "a map of ours"}
 ORDER = LEVEL | {"quantity": "order", "printed": -0.5, "in_range": False}
 ORDER |= {"low95_predicted": 0, "high95_predicted": 1}

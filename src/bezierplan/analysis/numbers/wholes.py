@@ -6,9 +6,9 @@ Methods that start alike, or plan on the same random maps, have good and bad luc
 repeats are drawn, each with the runs of all methods (`together`); otherwise each method's runs on
 their own. An experiment prints the mean of those of its runs that count, rounded like the paper's.
 
-Columns: study, table, place (the other keys), metric, methods (how many), quantity, printed, ours
-(the median of experiments), low95_predicted, high95_predicted, in_range, chance (the two-sided
-share of experiments that lie as far out), chance_any_order, outside, together, why.
+Columns: study, table, place (the other keys, as JSON), metric, methods (how many), quantity,
+printed, ours (the median of experiments), low95_predicted, high95_predicted, in_range, chance (the
+two-sided share of experiments that lie as far out), chance_any_order, outside, together, why.
 
 - level: the mean over methods; spread: the sample standard deviation; order: Spearman's rank
   correlation with our means. chance_any_order: the same among orders drawn by chance
@@ -19,6 +19,7 @@ share of experiments that lie as far out), chance_any_order, outside, together, 
   what holds on our map or by our definition, and decides nothing
 """
 
+import json
 from collections.abc import Iterator
 
 import numpy as np
@@ -64,11 +65,12 @@ def of_table(
         column = [key for key in cell if key not in ("method", "statistic")]
         for (*_, metric), group in means.merge(ours).groupby(column, sort=False):
             if len(group) >= LEAST:
-                where = place(group.iloc[0], column[:-1])
+                first = group.iloc[0][column[:-1]]
+                where = json.dumps(first.to_dict())
                 same = dict(zip(COLUMNS, [*name.split("/"), where, metric, len(group)]))
                 same["together"] = paired or bool((group["draws"] > 1).all())
                 same["why"] = max(REASONS.intersection(group["why"]), default="")
-                rng = generator(f"{name}/{where}/{metric}/wholes")
+                rng = generator(f"{name}/{place(first, first.index)}/{metric}/wholes")
                 rows += [same | row for row in _of(group, same["together"], rng)]
     return pd.DataFrame(rows, columns=COLUMNS)
 

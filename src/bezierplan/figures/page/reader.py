@@ -3,6 +3,7 @@ cells are None. Columns keep their names; what is added to a row stands in the f
 """
 
 import ast
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -192,9 +193,9 @@ def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> list[
     sentences = []
     for (place, metric), rows in columns.groupby(["place", "metric"], sort=False):
         head = [_heading(metric, "mean", spec, labels)]
-        for key, value in (part.split("=", 1) for part in place.split(", ")):
+        for key, value in json.loads(place).items():
             if value != spec.primary.get(key):
-                head.append(labels.get(value, f"{key} {value}"))
+                head.append(naming.printed(value, key, labels))
         whole = records(rows[rows["quantity"].isin(WHOLE)])
         why = f" It decides nothing: {whole[0]['why']}." if whole[0]["why"] else ""
         sentences.append(f"{', '.join(head)}: {'; '.join(map(_whole, whole))}.{why}")
