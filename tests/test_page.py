@@ -150,7 +150,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.baseline == []
     assert own.tables[0]["wholes"] == [
-        f"length, problem {HOSTILE}: level fits; order reversed (rank correlation with "
+        f"length, {HOSTILE}: level fits; order reversed (rank correlation with "
         "ours -0.5, expected 0 to 1). It decides nothing: a map of ours."
     ]
     alone = reader.studies(job(), folder, None)["one"]
