@@ -18,7 +18,7 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help reproduce smoke smoke-digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
+.PHONY: help reproduce smoke smoke-digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-19s %s\n", $$1, $$2 }'
@@ -88,11 +88,6 @@ outcome: .venv/ready ## everything at scales full and extended, then docs/outcom
 	@$(UNLOCK)
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
-
-verify-outcome: .venv/ready ## check this installation: minutes of runs, tested against docs/outcome
-	@$(UNLOCK)
-	$(SNAKEMAKE) published $(ARGS)
-	$(RUN) -m bezierplan verify results/full --outcome
 
 lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow pyproject.toml -o environment.txt

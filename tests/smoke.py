@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis.outcome.verification import TIMES
 from bezierplan.places import TREE
 
 KEPT = Path(__file__).parent / "data" / "smoke.csv"
@@ -25,7 +24,7 @@ def parts(folder: Path = RESULTS) -> dict[tuple[str, str, str], pd.DataFrame]:
         for file in sorted(folder.glob(f"{study}/paper/*.comparison.csv")):
             table = pd.read_csv(file)
             keys = table.columns[: table.columns.get_loc("unit")]
-            numbers = table.loc[~table["unit"].isin(TIMES), [*keys, "n_ours", "value_ours"]]
+            numbers = table.loc[~table["unit"].isin(["s", "ms"]), [*keys, "n_ours", "value_ours"]]
             for metric, rows in numbers.groupby("metric"):
                 found[study, file.name.partition(".")[0], metric] = rows
         for file in sorted(folder.glob(f"{study}/paper/table?.csv")):

@@ -75,7 +75,7 @@ def test_command_whose_planner_exits_says_so(ends, tmp_path, monkeypatch, capsys
         ["digest", "none"],
         ["check-planner", "none"],
         ["plan", "none.txt"],
-        ["verify", "none", "--outcome"],
+        ["verify", "none"],
         ["outcome", "none"],
     ],
 )

@@ -26,7 +26,6 @@ TARGETS = {
     "compare",
     "archive",
     "outcome",
-    "verify-outcome",
     "cluster",
     "lock",
     "newest",

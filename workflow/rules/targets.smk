@@ -37,18 +37,6 @@ rule readings:
         of_readings("extended", READ, "readings"),
 
 
-# What `make verify-outcome` compares with docs/outcome.
-rule published:
-    input:
-        [
-            file
-            for study in STUDIES.values()
-            for name, table in study.compared().items()
-            if table.published
-            for file in files_of("full", study, name)
-        ],
-
-
 # The report on the papers, for print: a page each, by the browser that the tests use.
 rule report_pdf:
     input:

@@ -1,12 +1,11 @@
-"""Check all results of a scale again, from runs to page, or its numbers with docs/outcome."""
+"""Check all results of a scale again, from runs to page."""
 
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bezierplan.analysis.outcome import proof, verification
+from bezierplan.analysis.outcome import proof
 from bezierplan.commands import config_of, cores, studies_of, study_named
-from bezierplan.places import STUDIES
 
 
 def main(
@@ -15,7 +14,6 @@ def main(
     studies: Sequence[str] = (),
     cores: int = cores(),
     all_: bool = False,
-    outcome: bool = False,
 ) -> None:
     """Print a line for each stored value or file that differs from what is made again, and what was
     checked: runs are judged again; the first run of each file and one in a hundred, bounds and all
@@ -34,22 +32,14 @@ def main(
         processes (default: all cores)
     all_ : bool
         make all runs again
-    outcome : bool
-        only compare numbers of scale full with docs/outcome: is this installation sound?
 
     Examples
     --------
     verify results/full --cores 2
-    verify results/full --outcome
     """
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
-    if outcome:
-        own = studies_of([str(file.parent) for file in STUDIES.glob("*/experiments.yaml")])
-        tables = [(key, name) for key, study in own.items() for name in study.with_published()]
-        lines, sound = verification.against_outcome(folder, tables)
-    else:
-        lines, sound = from_runs(folder, studies, cores, all_)
+    lines, sound = from_runs(folder, studies, cores, all_)
     print("\n".join(map(str, lines)))
     if not sound:
         sys.exit(1)
