@@ -36,10 +36,26 @@ from bezierplan.running.inputs import Files
 from bezierplan.workspaces.seeds import generator
 
 COLUMNS = (
-    *("study", "method", "baseline", "proposed", "conditions", "feasible", "feasible_baseline"),
-    *("compared", "length", "bent", "curvature", "bending", "cpu"),
-    *("gap", "gap_low", "gap_high", "evaluations"),
-    *("restarts", "feasible_restarts", "gap_restarts"),
+    "study",
+    "method",
+    "baseline",
+    "proposed",
+    "conditions",
+    "feasible",
+    "feasible_baseline",
+    "compared",
+    "length",
+    "bent",
+    "curvature",
+    "bending",
+    "cpu",
+    "gap",
+    "gap_low",
+    "gap_high",
+    "evaluations",
+    "restarts",
+    "feasible_restarts",
+    "gap_restarts",
 )
 
 # A path whose largest curvature times its length is below this, in radians, is straight.

@@ -92,11 +92,30 @@ UNDEFINED = "quantity that the paper does not define"
 """Why a number decides nothing, wherever it lies (`decides_nothing`)."""
 
 COLUMNS = [
-    *("metric", "statistic", "unit", "n_published", "value_published"),
-    *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
-    *("low95_ours", "high95_ours", "low95_predicted", "high95_predicted", "quantile_published"),
-    *("in_range", "power", "verdict", "why"),
-    *("identified", "possible", "share_feasible", "bound", "gap", "primary"),
+    "metric",
+    "statistic",
+    "unit",
+    "n_published",
+    "value_published",
+    "n_ours",
+    "n_asked",
+    "value_ours",
+    "value_ours_scaled",
+    "low95_ours",
+    "high95_ours",
+    "low95_predicted",
+    "high95_predicted",
+    "quantile_published",
+    "in_range",
+    "power",
+    "verdict",
+    "why",
+    "identified",
+    "possible",
+    "share_feasible",
+    "bound",
+    "gap",
+    "primary",
 ]
 
 

@@ -36,9 +36,22 @@ LEAST = 4
 """Methods that a column needs: of fewer, no order is unlikely."""
 
 COLUMNS = [
-    *("study", "table", "place", "metric", "methods", "quantity", "printed", "ours"),
-    *("low95_predicted", "high95_predicted", "in_range", "chance", "chance_any_order"),
-    *("outside", "together", "why"),
+    "study",
+    "table",
+    "place",
+    "metric",
+    "methods",
+    "quantity",
+    "printed",
+    "ours",
+    "low95_predicted",
+    "high95_predicted",
+    "in_range",
+    "chance",
+    "chance_any_order",
+    "outside",
+    "together",
+    "why",
 ]
 
 REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW, comparison.FITTED}
