@@ -20,7 +20,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import possible
-from bezierplan.analysis.audit.rows import NOT_KEYS, checked, place
+from bezierplan.analysis.audit.rows import checked, place
+from bezierplan.analysis.results import keys_of
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid
@@ -184,10 +185,10 @@ def of_table(
     """Rows of the audit: each published number for which an enumeration is declared, and one row a
     declaration with the chance of all.
 
-    published: with the column `printed`, as from `audit.read_published`. problems: by name; a
+    published: as from `results.printed_numbers`. problems: by name; a
     number's is in its column `problem`. A number that no path has is no contradiction.
     """
-    keys = published.columns.difference(NOT_KEYS, sort=False)
+    keys = keys_of(published)
     for entry in entries:
         tries = []
         what = (
@@ -200,7 +201,7 @@ def of_table(
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            path = sought(entry, problem, row["value"], possible.decimals(row["printed"]))
+            path = sought(entry, problem, row["value"], possible.decimals(row["as_printed"]))
             if path is None:
                 continue
             tries.append(path)

@@ -28,7 +28,7 @@ import pandas as pd
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit.rows import place
 from bezierplan.analysis.numbers import comparison, tables
-from bezierplan.analysis.results import Results
+from bezierplan.analysis.results import Results, keys_of
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator
 
@@ -68,7 +68,7 @@ def of_table(
     numbers: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
     whether runs with equal repeat numbers start alike.
     """
-    keys = numbers.columns[: numbers.columns.get_loc("metric")].to_list()
+    keys = keys_of(numbers)
     means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["in_range", "value_ours"]).astype(dict.fromkeys(keys, object))
     rows = []

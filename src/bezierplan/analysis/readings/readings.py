@@ -30,7 +30,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.readings import fit
 from bezierplan.analysis.readings.assumptions import Alternatives, Reading, ReadingRuns
-from bezierplan.analysis.results import Results, joined, published_table, select
+from bezierplan.analysis.results import Results, joined, keys_of, select
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, problems
@@ -85,8 +85,8 @@ def quantities(
     """
     all_quantities = []
     for name, spec in tables.items():
-        printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
-        keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
+        printed = comparison.read_published(files[Path(spec.published).stem], spec)
+        keys = keys_of(printed)
         printed = printed.replace({"statistic": {"unstated": "median"}})
         for entry in spec.values:
             for named in one_or_list(entry.statistic):
