@@ -57,47 +57,30 @@ DIGITS_LEVEL = 0.01
 
 
 def below_bound(
-    tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]
-) -> list[dict]:
+    item: str, table: pd.DataFrame, bounds: pd.DataFrame, primary: dict[str, Any]
+) -> Iterator[dict]:
     """Check every published length against the exact shortest length of its problem.
 
-    tables: published numbers, by table, as from `printed_numbers`. bounds: of the same tables'
-    experiments, one row per problem, indexed by name. primary: of a table, column -> the value of
-    the default reading. The allowance is half a unit of the last printed digit.
+    table: published numbers, as from `printed_numbers`. bounds: of the same table's experiment, one
+    row per problem, indexed by name. primary: column -> the value of the default reading. The
+    allowance is half a unit of the last printed digit.
 
     A number's problem is the one that its row names, as problem or as workspace; without either,
     that of the default reading, or the only one of the experiment. Numbers that cover
     several problems are left out.
     """
-    rows, rule = [], "a path is no shorter than the shortest path"
-    for name, table in tables.items():
-        keys = keys_of(table)
-        for _, row in table[
-            table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
-        ].iterrows():
-            bound = bounds[name]["bound"].get(
-                _problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan
-            )
-            if math.isnan(bound):
-                continue
-            where = place(row, [*keys, "metric", "statistic"])
+    rule = "a path is no shorter than the shortest path"
+    lengths = table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
+    for _, row in table[lengths].iterrows():
+        described = primary | row.to_dict()
+        problem = described.get("problem", described.get("workspace"))
+        if problem is None and len(bounds) == 1:
+            problem = bounds.index[0]
+        bound = bounds["bound"].get(problem, math.nan)
+        if not math.isnan(bound):
+            where = place(row, [*keys_of(table), "metric", "statistic"])
             fits = possible.printed(row["as_printed"]).high >= bound
-            rows.append(checked(name, where, rule, row["value"], bound, fits))
-    return rows
-
-
-def _problem(row: dict, bounds: pd.DataFrame) -> str | None:
-    """The problem of a published number, from the columns that describe it; None if it is
-    ambiguous.
-    """
-    named = row.get("problem", row.get("workspace"))
-    return (
-        named
-        if named in bounds.index
-        else bounds.index[0]
-        if named is None and len(bounds) == 1
-        else None
-    )
+            yield checked(item, where, rule, row["value"], bound, fits)
 
 
 # Rules that hold for any paper
@@ -287,11 +270,9 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         column for column in every if column not in ("statistic", "value", "as_printed", "unit")
     ]
     for n, own in every.groupby("n"):
-        filled = own.assign(**{key: own[key].astype(str) for key in keys})
-        wide = filled.pivot_table("value", keys, "statistic").reindex(
-            columns=["min", "mean", "max"]
-        )
-        wide = wide.dropna()
+        filled = own.astype(dict.fromkeys(keys, str))
+        wide = filled.pivot_table("value", keys, "statistic")
+        wide = wide.reindex(columns=["min", "mean", "max"]).dropna()
         if len(wide) < LEAST_MEANS or n < 2:
             continue
         apart, count = float(_from_middle(*wide.to_numpy().T)), len(wide)
@@ -358,16 +339,13 @@ def audited(
     experiment_files: by experiment. files: of published numbers, by table.
     """
     published = {name: printed_numbers(file) for name, file in files.items()}
-    bounds = {
-        name: pd.read_parquet(own.bounds).set_index("problem")
-        for name, own in experiment_files.items()
-    }
-    of_tables = {name: bounds[spec.experiment] for name, spec in job.tables.items()}
-    compared = {table: published[table] for table in of_tables}
-    # Bounds of maps that a paper does not print say nothing of its numbers.
-    on_its_maps = {name: table for name, table in compared.items() if name not in job.reconstructed}
-    primary = {name: spec.primary for name, spec in job.tables.items()}
-    rows = below_bound(on_its_maps, of_tables, primary) + of_any_paper(compared, job.tables)
+    rows = []
+    for name, spec in job.tables.items():
+        # Bounds of maps that a paper does not print say nothing of its numbers.
+        if name not in job.reconstructed:
+            bounds = pd.read_parquet(experiment_files[spec.experiment].bounds).set_index("problem")
+            rows += below_bound(name, published[name], bounds, spec.primary)
+    rows += of_any_paper({name: published[name] for name in job.tables}, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
             made = problems.read(experiment_files[spec.experiment].problems)

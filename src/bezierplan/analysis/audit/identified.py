@@ -66,6 +66,7 @@ class Ways(NamedTuple):
     lengths: np.ndarray
 
 
+@lru_cache(maxsize=4)
 def ways(grid: Grid) -> Ways:
     """All free edges between centres of free cells, of which no one passes along others: an edge is
     what a planner draws.
@@ -114,16 +115,16 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     if not np.allclose([grid.centre(cell) for cell in cells], ends):
         return None
     printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
-    ways = _ways_of(grid.occupied.tobytes(), grid.occupied.shape)
-    first, last = (int(np.searchsorted(ways.cells, cell)) for cell in cells)
-    reached = _reached(ways, first, printed + NEARBY + half, last, edges)
+    free = ways(grid)
+    first, last = (int(np.searchsorted(free.cells, cell)) for cell in cells)
+    reached = _reached(free, first, printed + NEARBY + half, last, edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
-    paths = _paths(ways, reached, last, printed, half)
+    paths = _paths(free, reached, last, printed, half)
     legs = itertools.pairwise(paths[0]) if paths else ()
     return Identification(
-        [tuple(int(ways.cells[place]) for place in path) for path in paths],
+        [tuple(int(free.cells[place]) for place in path) for path in paths],
         _chance(every, printed, half),
-        sum(ways.lengths[one, other] for one, other in legs) if paths else math.nan,
+        sum(free.lengths[one, other] for one, other in legs) if paths else math.nan,
     )
 
 
@@ -160,11 +161,6 @@ def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Id
     if entry.diagonal is None:
         return in_problem(problem, value, decimals, entry.edges)
     return of_moves(problem, value, entry.diagonal)
-
-
-@lru_cache(maxsize=4)
-def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
-    return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
 
 
 def in_words(identification: Identification) -> str:
