@@ -470,7 +470,7 @@ def surface(monkeypatch, truth):
     monkeypatch.setattr(
         tharwat2018,
         "_landscape",
-        lambda results: pd.DataFrame({"x": x, "y": y, "fitness": fitness}),
+        lambda results: pd.DataFrame({"x": x, "y": y, "objective": fitness}),
     )
     rows = pd.DataFrame({"repeat": [0], "workspace": "equal", "profile": "default"})
     return results_of(rows, "maps", method="cpso2_singer"), None

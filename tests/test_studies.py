@@ -145,7 +145,7 @@ def test_nodes_of_one_valley_are_one_minimum():
 def surface_of(values):
     side = np.linspace(-10, 10, len(values))
     x, y = np.meshgrid(side, side, indexing="ij")
-    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": values.ravel()})
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": values.ravel()})
 
 
 def on_maps(where):
@@ -163,7 +163,7 @@ def test_landscape(world, minima, correlation):
     surface = tharwat2018.landscape(problem(world), world, SAMPLES, BETA)
     side = tharwat2018.GRID
     assert len(surface) == side**2
-    values = surface["fitness"].to_numpy().reshape(side, side)
+    values = surface["objective"].to_numpy().reshape(side, side)
     assert values.min() >= math.dist((0, 0), (4, 6))
     assert tharwat2018.local_minima(values).sum() == minima
     place = surface.iloc[[17 * side + 150]]
@@ -171,7 +171,7 @@ def test_landscape(world, minima, correlation):
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
     path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
     assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
-        place["fitness"].iloc[0], rel=1e-12
+        place["objective"].iloc[0], rel=1e-12
     )
     runs = pd.DataFrame(
         [

@@ -298,9 +298,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
             "unit": _unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,
-            "place": json.dumps(
-                {key: getattr(at, "item", lambda at=at: at)() for key, at in entry.place}
-            ),
+            "place": json.dumps(dict(entry.place), default=np.generic.item),
             "counted": entry.counted,
             "effect_published": effect_published,
             "published": {True: "holds", False: "fails", None: "not printed"}[agrees],

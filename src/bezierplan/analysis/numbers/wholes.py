@@ -134,9 +134,15 @@ def _deviations(means: np.ndarray, methods: np.ndarray, tail: float) -> Iterator
         scale = np.maximum(off[1:].std(axis=0), _EXACT)
         squares = ((off - off[1:].mean(axis=0)) / scale) ** 2
         sums = squares.sum(axis=1)
-        row = {"quantity": quantity, "methods": len(methods), "printed": outside.sum()}
-        row |= {"chance": _share(sums[1:] >= sums[0]), "outside": ", ".join(methods[outside])}
-        yield row | {"in_range": row["chance"] >= 2 * tail}
+        chance = _share(sums[1:] >= sums[0])
+        yield {
+            "quantity": quantity,
+            "methods": len(methods),
+            "printed": outside.sum(),
+            "in_range": chance >= 2 * tail,
+            "chance": chance,
+            "outside": ", ".join(methods[outside]),
+        }
         farthest = squares[0].argmax()
         means, methods = (np.delete(each, farthest, axis=-1) for each in (means, methods))
 
@@ -146,9 +152,15 @@ def _placed(quantity: str, values: np.ndarray, tail: float) -> dict:
     printed, others = values[0], values[1:][~np.isnan(values[1:])]
     low, median, high = np.quantile(others, [tail, 0.5, 1 - tail])
     beyond = min(_share(others <= printed + _EXACT), _share(others >= printed - _EXACT))
-    row = {"quantity": quantity, "printed": printed, "ours": median}
-    row |= {"low95_predicted": low, "high95_predicted": high}
-    return row | {"in_range": beyond >= tail, "chance": min(2 * beyond, 1.0)}
+    return {
+        "quantity": quantity,
+        "printed": printed,
+        "ours": median,
+        "low95_predicted": low,
+        "high95_predicted": high,
+        "in_range": beyond >= tail,
+        "chance": min(2 * beyond, 1.0),
+    }
 
 
 def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:

@@ -9,12 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import CORNER, headings, path_headings
-from bezierplan.analysis.metric import (
-    metric,
-    of_path,
-    of_paths,
-    on_map,
-)
+from bezierplan.analysis.metric import metric, of_path, of_paths, on_map
 from bezierplan.workspaces.grid import Grid
 
 if TYPE_CHECKING:

@@ -142,10 +142,10 @@ def bowl_with_local_minima(
 
     found = results[check.experiment]
     surface = _landscape(found._replace(runs=select(found.runs, check.where)))
-    best = surface.loc[surface["fitness"].idxmin()]
+    best = surface.loc[surface["objective"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
-    correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
-    minima = int(valleys(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
+    correlation = float(stats.spearmanr(surface["objective"], distance).statistic)
+    minima = int(valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).sum())
     return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
 
 
@@ -155,7 +155,7 @@ def fitness_landscape(results: Results) -> pd.DataFrame:
     Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
     fixed (control points that do not move).
     """
-    surface = _landscape(results).rename(columns={"fitness": "objective"})
+    surface = _landscape(results)
     minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
     stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
     parts = {
@@ -176,10 +176,10 @@ def _landscape(results: Results) -> pd.DataFrame:
 
 
 def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
-    """Figures 10 and 11: fitness of a Bézier curve with one control point moving over the field,
+    """Figures 10 and 11: objective of a Bézier curve with one control point moving over the field,
     the others as in `BEST_KNOWN`.
 
-    One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units.
+    One row per node of a square grid, y changing fastest; columns: x, y and objective, in units.
     samples, beta: settings of the planner.
     """
     x_low, x_high, y_low, y_high = problem.workspace.bounds
@@ -191,7 +191,7 @@ def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
     # In parts, to save memory.
     values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]
-    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": np.concatenate(values)})
 
 
 def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
