@@ -93,6 +93,8 @@ def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> li
     that reproduces it: the columns within whose values its rows are ranked, metrics of which only
     some runs count, the orders that its rows must keep.
     """
+    if not tables:
+        return []
     rows = []
     for name, table in tables.items():
         picks = [entry.metric for entry in specs[name].values if entry.where]
@@ -261,11 +263,10 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 
     Numbers with a tail lie farther from the middle than normal ones.
     """
-    lengths = [
+    every = pd.concat(
         table[table["metric"].isin(AT_LEAST_A_LENGTH)].assign(item=name)
         for name, table in tables.items()
-    ]
-    every = pd.concat(lengths) if lengths else pd.DataFrame(columns=["n"])
+    )
     keys = [
         column for column in every if column not in ("statistic", "value", "as_printed", "unit")
     ]
@@ -300,8 +301,6 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """
     from scipy import stats
 
-    if not tables:
-        return
     every = pd.concat([table.assign(item=name) for name, table in tables.items()])
     whole = [METRICS[metric].step is not None for metric in every["metric"]]
     every = every[~every["statistic"].isin(["count", "share"]) & ~np.array(whole)]

@@ -184,15 +184,12 @@ def compare(
     }
     rows = [
         _described(row, keys, name, _rivals(row, key_columns, printed))
+        | {"identified": _identified(row, spec.identify, results.problems)}
         for row in both.to_dict("records")
     ]
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    table["identified"] = pd.Series(
-        [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
-        dtype=object,
-    )
     on_open_map = pd.Series(reconstructed, both.index)
     if by_reading is not None:
         own = by_reading[by_reading["table"] == name.partition("/")[2]]

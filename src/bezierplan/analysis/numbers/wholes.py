@@ -76,14 +76,14 @@ def of_table(
         cell = [*keys, "metric", "statistic"]
         ours = tables.cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
         column = [key for key in cell if key not in ("method", "statistic")]
-        for (*_, metric), group in means.merge(ours).groupby(column, sort=False):
+        for (*values, metric), group in means.merge(ours).groupby(column, sort=False):
             if len(group) >= LEAST:
-                first = group.iloc[0][column[:-1]]
-                where = json.dumps(first.to_dict())
-                same = dict(zip(COLUMNS, [*name.split("/"), where, metric, len(group)]))
+                where = dict(zip(column, values))
+                told = [*name.split("/"), json.dumps(where), metric, len(group)]
+                same = dict(zip(COLUMNS, told))
                 same["together"] = paired or bool((group["draws"] > 1).all())
                 same["why"] = max(REASONS.intersection(group["why"]), default="")
-                rng = generator(f"{name}/{place(first, first.index)}/{metric}/wholes")
+                rng = generator(f"{name}/{place(where, where)}/{metric}/wholes")
                 rows += [same | row for row in _of(group, same["together"], rng)]
     return pd.DataFrame(rows, columns=COLUMNS)
 

@@ -39,7 +39,6 @@ from bezierplan.running.guard.interface import check_settings
 from bezierplan.running.inputs import Files
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
@@ -89,7 +88,7 @@ def quantities(
         keys = keys_of(printed)
         printed = printed.replace({"statistic": {"unstated": "median"}})
         for entry in spec.values:
-            for named in one_or_list(entry.statistic):
+            for named in entry.statistics:
                 statistic = named.replace("unstated", "median")
                 rows = select(printed, {"metric": entry.metric, "statistic": statistic})
                 if statistic not in VOTING or rows.empty:

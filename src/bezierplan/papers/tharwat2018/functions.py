@@ -47,11 +47,7 @@ CONVERGED = 0.01
 CHAOTIC = chaotic_maps.MAPS[:8]
 
 
-def chaotic_sequences(
-    *,
-    iterations: int,
-    singer_mu: float,
-) -> pd.DataFrame:
+def chaotic_sequences(*, iterations: int, singer_mu: float) -> pd.DataFrame:
     """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1),
     value. Each map has one random start.
 
