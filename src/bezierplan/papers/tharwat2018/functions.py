@@ -137,7 +137,7 @@ def bowl_with_local_minima(
     from scipy import stats
 
     found = results[check.experiment]
-    surface = _landscape(found._replace(runs=select(found.runs, check.where)))
+    surface = landscape(found._replace(runs=select(found.runs, check.where)))
     best = surface.loc[surface["objective"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["objective"], distance).statistic)
@@ -146,12 +146,12 @@ def bowl_with_local_minima(
 
 
 def fitness_landscape(results: Results) -> pd.DataFrame:
-    """Figures 10 to 12: `landscape` of the problem of runs, with the settings of the run.
+    """Figures 10 to 12: `landscape` of runs, with its minima.
 
     Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
     fixed (control points that do not move).
     """
-    surface = _landscape(results)
+    surface = landscape(results)
     minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
     stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
     parts = {
@@ -163,30 +163,26 @@ def fitness_landscape(results: Results) -> pd.DataFrame:
     return pd.concat([frame.assign(part=part) for part, frame in parts.items()], ignore_index=True)
 
 
-def _landscape(results: Results) -> pd.DataFrame:
-    """`landscape` with the settings of the first run of the swarms."""
-    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
-    return landscape(
-        results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"])
-    )
-
-
-def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
+def landscape(results: Results) -> pd.DataFrame:
     """Figures 10 and 11: objective of a Bézier curve with one control point moving over the field,
-    the others as in `BEST_KNOWN`.
+    the others as in `BEST_KNOWN`; problem and settings are those of the first run of the swarms.
 
     One row per node of a square grid, y changing fastest; columns: x, y and objective, in units.
-    samples, beta: settings of the planner.
     """
+    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
+    problem, known = results.problems[run["problem"]], BEST_KNOWN[run["workspace"]]
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     x, y = np.meshgrid(
         np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij"
     )
-    paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
-    paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
+    paths = np.empty((GRID * GRID, len(known) + 2, 2))
+    paths[:] = [problem.start, *known, problem.target]
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
     # In parts, to save memory.
-    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]
+    values = [
+        fitness(part, problem, int(run["samples"]), float(run["beta"]))
+        for part in np.array_split(paths, GRID)
+    ]
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": np.concatenate(values)})
 
 
