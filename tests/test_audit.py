@@ -165,9 +165,10 @@ def test_ranks_are_added_within_the_columns_of_a_table():
     rows = [
         (name, "rank", "mean", text) for name, text in zip("abab", ("1.2", "1.8", "1.5", "1.5"))
     ]
-    numbers = {"table1": table(*rows).assign(problem=["p", "p", "q", "q"])}
+    numbers = table(*rows)
+    numbers.insert(0, "problem", ["p", "p", "q", "q"])
     for columns, sums in ((["problem"], [True, True]), ([], [False])):
-        assert marks(audit.of_ranks("table1", numbers["table1"], columns), "add to") == sums
+        assert marks(audit.of_ranks("table1", numbers, columns), "add to") == sums
 
 
 # Orders
@@ -180,7 +181,7 @@ def test_an_order_that_must_be_kept():
         ("a", "length", "mean", "5.1"),
         ("a", "length", "max", "1"),
     )
-    numbers = numbers.assign(obstacles=[1, 3, 2, 4])
+    numbers.insert(1, "obstacles", [1, 3, 2, 4])
     rule = Monotone(
         metric="length",
         statistic="mean",
