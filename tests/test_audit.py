@@ -20,10 +20,10 @@ from bezierplan.analysis.table_kinds import Monotone
 
 def table(*rows, n=10):
     """Published numbers: (method, metric, statistic, text)."""
-    frame = pd.DataFrame(rows, columns=["method", "metric", "statistic", "printed"]).assign(
+    frame = pd.DataFrame(rows, columns=["method", "metric", "statistic", "as_printed"]).assign(
         n=n, unit="-"
     )
-    return frame.assign(value=frame["printed"].astype(float))
+    return frame.assign(value=frame["as_printed"].astype(float))
 
 
 def spec(columns=(), picks=(), monotone=()):
@@ -165,9 +165,10 @@ def test_ranks_are_added_within_the_columns_of_a_table():
     rows = [
         (name, "rank", "mean", text) for name, text in zip("abab", ("1.2", "1.8", "1.5", "1.5"))
     ]
-    numbers = {"table1": table(*rows).assign(problem=["p", "p", "q", "q"])}
+    numbers = table(*rows)
+    numbers.insert(0, "problem", ["p", "p", "q", "q"])
     for columns, sums in ((["problem"], [True, True]), ([], [False])):
-        assert marks(audit.of_ranks("table1", numbers["table1"], columns), "add to") == sums
+        assert marks(audit.of_ranks("table1", numbers, columns), "add to") == sums
 
 
 # Orders
@@ -180,7 +181,7 @@ def test_an_order_that_must_be_kept():
         ("a", "length", "mean", "5.1"),
         ("a", "length", "max", "1"),
     )
-    numbers = numbers.assign(obstacles=[1, 3, 2, 4])
+    numbers.insert(1, "obstacles", [1, 3, 2, 4])
     rule = Monotone(
         metric="length",
         statistic="mean",
@@ -232,7 +233,7 @@ def test_numbers_printed_twice_count_once():
 
 def test_decimals_of_ma2020_are_not_equally_likely():
     tables = {
-        name: audit.read_published(str(FOLDER / f"ma2020/published/{name}.csv"))
+        name: audit.printed_numbers(str(FOLDER / f"ma2020/published/{name}.csv"))
         for name in ("table1", "table2")
     }
     (row,) = audit.of_digits(tables)
@@ -269,7 +270,7 @@ def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
 
 
 def read(name):
-    return audit.read_published(FOLDER / name)
+    return audit.printed_numbers(FOLDER / name)
 
 
 def test_middles_of_ma2020():
@@ -312,8 +313,8 @@ def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_dig
     file.write_text(
         f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"
     )
-    bounds = {"table1": pd.DataFrame({"bound": [bound]}, index=["across"])}
-    (row,) = audit.below_bound({"table1": audit.read_published(str(file))}, bounds, {})
+    bounds = pd.DataFrame({"bound": [bound]}, index=["across"])
+    (row,) = audit.below_bound("table1", audit.printed_numbers(str(file)), bounds, {})
     assert bool(row["consistent"]) == consistent
     assert (row["printed"], row["limit"]) == (float(printed), bound)
     assert row["place"].startswith("problem=across, method=plain")

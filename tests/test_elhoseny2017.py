@@ -20,7 +20,7 @@ from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {
-    file.stem: audit.read_published(str(file))
+    file.stem: audit.printed_numbers(str(file))
     for file in sorted((FOLDER / "published").glob("*.csv"))
 }
 

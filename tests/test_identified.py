@@ -99,8 +99,7 @@ def of_song2016(method):
     grid = from_lines(
         (FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit"
     )
-    published = pd.read_csv(FOLDER / "song2016/published/table1.csv")
-    published["printed"] = pd.read_csv(FOLDER / "song2016/published/table1.csv", dtype=str)["value"]
+    published = audit.printed_numbers(FOLDER / "song2016/published/table1.csv")
     ends = {name: tuple(map(int, name.split("_"))) for name in published["problem"].unique()}
     problems = {
         name: Problem(name, grid, grid.centre(start), grid.centre(target))
@@ -178,7 +177,7 @@ def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_i
     square = Problem("", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
     problems, found = {f"environment{n}": square for n in (1, 2)}, {}
     for n in (1, 2):
-        published = audit.read_published(FOLDER / f"ma2020/published/table{n}.csv")
+        published = audit.printed_numbers(FOLDER / f"ma2020/published/table{n}.csv")
         for statistic in ("min", "max"):
             where = {"method": ["aco", "ga", "aco_ga", "asfa_ga"]}
             told = {"metric": "length", "statistic": statistic, "where": where, "because": "cells"}

@@ -103,26 +103,21 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
         ("a", "cpu_s", "mean", 0.1),
     ]
     table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(
-        printed=["8.9", "9.1", "0.5", "0.1"]
+        as_printed=["8.9", "9.1", "0.5", "0.1"]
     )
     one, two = (
         pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2)
     )
 
     def audited(table, bounds, primary):
-        return [
-            row["consistent"]
-            for row in audit.below_bound(
-                {"t": table}, {"t": bounds}, {"t": primary} if primary else {}
-            )
-        ]
+        return [row["consistent"] for row in audit.below_bound("t", table, bounds, primary)]
 
-    assert audited(table, one, None) == [False, True]
-    assert audited(table, two, None) == []
+    assert audited(table, one, {}) == [False, True]
+    assert audited(table, two, {}) == []
     assert audited(table, two, {"workspace": "other"}) == [True, True]
-    assert audited(table.assign(workspace="disc"), two, None) == [False, True]
-    assert audited(table.assign(problem="other"), two, None) == [True, True]
-    assert audited(table.assign(problem="elsewhere"), one, None) == []
+    assert audited(table.assign(workspace="disc"), two, {}) == [False, True]
+    assert audited(table.assign(problem="other"), two, {}) == [True, True]
+    assert audited(table.assign(problem="elsewhere"), one, {}) == []
 
 
 @pytest.mark.parametrize(
@@ -136,10 +131,9 @@ def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent)
             "metric": "length",
             "statistic": "min",
             "value": [float(printed)],
-            "printed": [printed],
+            "as_printed": [printed],
         }
     )
-    (row,) = audit.below_bound(
-        {"t": table}, {"t": pd.DataFrame({"bound": [8.9549]}, index=["disc"])}, {}
-    )
+    bounds = pd.DataFrame({"bound": [8.9549]}, index=["disc"])
+    (row,) = audit.below_bound("t", table, bounds, {})
     assert row["consistent"] == consistent

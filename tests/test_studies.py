@@ -145,7 +145,7 @@ def test_nodes_of_one_valley_are_one_minimum():
 def surface_of(values):
     side = np.linspace(-10, 10, len(values))
     x, y = np.meshgrid(side, side, indexing="ij")
-    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": values.ravel()})
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": values.ravel()})
 
 
 def on_maps(where):
@@ -160,19 +160,6 @@ def test_landscape(world, minima, correlation):
     """Numbers of an independent computation; the correlation is that of
     `bowl_with_local_minima`.
     """
-    surface = tharwat2018.landscape(problem(world), world, SAMPLES, BETA)
-    side = tharwat2018.GRID
-    assert len(surface) == side**2
-    values = surface["fitness"].to_numpy().reshape(side, side)
-    assert values.min() >= math.dist((0, 0), (4, 6))
-    assert tharwat2018.local_minima(values).sum() == minima
-    place = surface.iloc[[17 * side + 150]]
-    points = np.array(tharwat2018.BEST_KNOWN[world])
-    points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
-    path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
-        place["fitness"].iloc[0], rel=1e-12
-    )
     runs = pd.DataFrame(
         [
             {
@@ -185,8 +172,21 @@ def test_landscape(world, minima, correlation):
             }
         ]
     )
-    check = on_maps({"workspace": world})
     found = Results(runs, {world: problem(world)}, pd.DataFrame())
+    surface = tharwat2018.landscape(found)
+    side = tharwat2018.GRID
+    assert len(surface) == side**2
+    values = surface["objective"].to_numpy().reshape(side, side)
+    assert values.min() >= math.dist((0, 0), (4, 6))
+    assert tharwat2018.local_minima(values).sum() == minima
+    place = surface.iloc[[17 * side + 150]]
+    points = np.array(tharwat2018.BEST_KNOWN[world])
+    points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
+    path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+        place["objective"].iloc[0], rel=1e-12
+    )
+    check = on_maps({"workspace": world})
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
     assert effect == pytest.approx(correlation, abs=0.01)
@@ -331,7 +331,7 @@ def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
     specs = jobs.audit(study, "full").tables
     tables = published("tharwat2018")
-    compared = {name: audit.read_published(study.published_file(name)) for name in specs}
+    compared = {name: audit.printed_numbers(study.published_file(name)) for name in specs}
     rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, specs))
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")

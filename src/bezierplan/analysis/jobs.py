@@ -60,8 +60,8 @@ class Job(ABC):
         """Of the values, the content of sources, and the code that works, with the versions of
         libraries that compute. Objects that have the same text are the same.
         """
-        values = [(each.name, getattr(self, each.name)) for each in fields(self)]
-        text = repr([each for each in values if each[0] != "sources"])
+        names = [each.name for each in fields(self) if each.name != "sources"]
+        text = repr([(name, getattr(self, name)) for name in names])
         works = tuple(
             function
             for name, function in inspect.getmembers(type(self), inspect.isfunction)

@@ -95,11 +95,7 @@ def register(functions: dict[str, Metric]) -> None:
     METRICS.update(functions)
 
 
-def count(
-    meaning: str,
-    compute: Compute | None = None,
-    **more: Any,
-) -> Metric:
+def count(meaning: str, compute: Compute | None = None, **more: Any) -> Metric:
     """A count of every run, or whether something is true of it: 1 or 0."""
     return Metric("-", meaning, compute, step=1.0, **more)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -96,28 +96,38 @@ def unit(name: str, workspace_unit: str) -> str:
 AT_LEAST_A_LENGTH = ("length", "objective")
 """Metrics that are path lengths or never less."""
 
-AT_LEAST_0 = {"least": 0.0}
-OF_COLUMNS: dict[str, dict[str, Any]] = {
-    "length": {"feasible_only": True, "least": "bound"},
-    "arrival": {"feasible_only": True} | AT_LEAST_0,
-}
-OF_COLUMNS |= {
-    name: {}
-    for name in (
-        *("objective", "claimed_feasible", "feasible", "collision_depth", "clearance"),
-        *("generations", "hit_waiting", "clearance_least", "least_arrival"),
-    )
-}
-OF_COLUMNS |= dict.fromkeys(
-    [
-        *("evaluations", "cpu_s", "steps", "travelled", "replans", "waits", "collision_steps"),
-        *("replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"),
-    ],
-    AT_LEAST_0,
+OF_COLUMNS = (
+    "objective",
+    "claimed_feasible",
+    "feasible",
+    "collision_depth",
+    "clearance",
+    "generations",
+    "hit_waiting",
+    "clearance_least",
+    "least_arrival",
 )
-"""Columns of `running.columns` that are metrics -> what else is known of these."""
+"""Columns of `running.columns` that are metrics, and those of which no value lies below 0."""
+AT_LEAST_0 = (
+    "evaluations",
+    "cpu_s",
+    "steps",
+    "travelled",
+    "replans",
+    "waits",
+    "collision_steps",
+    "replan_mean_s",
+    "replan_95_s",
+    "replan_max_s",
+    "replans_late",
+)
 
-METRICS |= {name: of_column(name, **facts) for name, facts in OF_COLUMNS.items()}
+METRICS |= {
+    "length": of_column("length", feasible_only=True, least="bound"),
+    "arrival": of_column("arrival", feasible_only=True, least=0.0),
+}
+METRICS |= {name: of_column(name) for name in OF_COLUMNS}
+METRICS |= {name: of_column(name, least=0.0) for name in AT_LEAST_0}
 METRICS |= {
     "failed": count(
         "without a path that the certified checker accepts",

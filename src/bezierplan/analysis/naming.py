@@ -20,9 +20,10 @@ def amount(number: str, unit: str) -> str:
 
 def printed(value: Any, column: str, labels: Mapping[str, str]) -> str:
     """How a value of a column is printed: as its label, or a number after the column's label."""
-    name = value if isinstance(value, str) else f"{value:g}"
-    without = name if isinstance(value, str) else f"{column_name(column, labels)} = {name}"
-    return labels.get(name, without)
+    if isinstance(value, str):
+        return labels.get(value, value)
+    name = f"{value:g}"
+    return labels.get(name, f"{column_name(column, labels)} = {name}")
 
 
 def column_name(column: str, labels: Mapping[str, str]) -> str:

@@ -76,19 +76,20 @@ def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.Data
     one that belongs in its place, or lacks a declared column.
     """
     seen: set[str] = set()
-    for method, file in ((method, chunk) for method, chunks in files.items() for chunk in chunks):
-        rows = _read(file, "runs")
-        for column, own in (("experiment", experiment), ("method", method)):
-            if others := set(rows[column]) - {own}:
-                raise row_files.misplaced(file, f"of {column} {min(others)}, not {own}")
-        if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
-            raise row_files.misplaced(file, "the runs of another chunk")
-        seen.update(rows["id"])
-        beside = str(PurePath(file).with_suffix(".times.parquet"))
-        times = _read(beside, "times")
-        if sorted(times["id"]) != sorted(rows["id"]):
-            raise row_files.misplaced(beside, f"not the times of {PurePath(file).name}")
-        yield rows.merge(times, on="id", validate="one_to_one")
+    for method, chunks in files.items():
+        for file in chunks:
+            rows = _read(file, "runs")
+            for column, own in (("experiment", experiment), ("method", method)):
+                if others := set(rows[column]) - {own}:
+                    raise row_files.misplaced(file, f"of {column} {min(others)}, not {own}")
+            if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
+                raise row_files.misplaced(file, "the runs of another chunk")
+            seen.update(rows["id"])
+            beside = str(PurePath(file).with_suffix(".times.parquet"))
+            times = _read(beside, "times")
+            if sorted(times["id"]) != sorted(rows["id"]):
+                raise row_files.misplaced(beside, f"not the times of {PurePath(file).name}")
+            yield rows.merge(times, on="id", validate="one_to_one")
 
 
 _DRIVEN = {"runs": "arrival", "times": "replan_mean_s", "bounds": "least_arrival"}
@@ -163,6 +164,21 @@ def published_table(file: str) -> pd.DataFrame:
     names.
     """
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
+
+
+def printed_numbers(file: str) -> pd.DataFrame:
+    """A file of published numbers with one more column, `as_printed`: the text of their values,
+    which keeps trailing zeros.
+    """
+    table = published_table(file)
+    if "value" in table:
+        table["as_printed"] = pd.read_csv(file, dtype=str)["value"]
+    return table
+
+
+def keys_of(numbers: pd.DataFrame) -> list[str]:
+    """The columns that tell rows of published numbers apart: those left of `metric`."""
+    return numbers.columns[: numbers.columns.get_loc("metric")].to_list()
 
 
 def published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:

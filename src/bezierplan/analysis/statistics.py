@@ -321,16 +321,11 @@ def prediction(
     if not len(values) or math.isnan(published):
         return Prediction(math.nan, None, math.nan, math.nan)
     least, most, tail = _experiments(name, values, size, rng, possible, groups)
-    low, high = (
-        np.quantile(least, tail, method="lower"),
-        np.quantile(most, 1 - tail, method="higher"),
-    )
+    low = np.quantile(least, tail, method="lower")
+    high = np.quantile(most, 1 - tail, method="higher")
     if decimals is not None:
-        least, most, published = (
-            np.round(least, decimals),
-            np.round(most, decimals),
-            round(published, decimals),
-        )
+        least, most = np.round(least, decimals), np.round(most, decimals)
+        published = round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
     in_range = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
     return Prediction(float((below + 1 - above) / 2), in_range, float(low), float(high))

@@ -21,9 +21,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import identified, possible
-from bezierplan.analysis.audit.rows import COLUMNS, NOT_KEYS, checked, place, together
+from bezierplan.analysis.audit.rows import COLUMNS, checked, place, together
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
-from bezierplan.analysis.results import groups, published_table
+from bezierplan.analysis.results import groups, keys_of, printed_numbers
 from bezierplan.analysis.table_kinds import Monotone, Pivot
 from bezierplan.running import problems
 from bezierplan.running.inputs import Files
@@ -57,52 +57,30 @@ DIGITS_LEVEL = 0.01
 
 
 def below_bound(
-    tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]
-) -> list[dict]:
+    item: str, table: pd.DataFrame, bounds: pd.DataFrame, primary: dict[str, Any]
+) -> Iterator[dict]:
     """Check every published length against the exact shortest length of its problem.
 
-    tables: published numbers, by table, as from `read_published`. bounds: of the same tables'
-    experiments, one row per problem, indexed by name. primary: of a table, column -> the value of
-    the default reading. The allowance is half a unit of the last printed digit.
+    table: published numbers, as from `printed_numbers`. bounds: of the same table's experiment, one
+    row per problem, indexed by name. primary: column -> the value of the default reading. The
+    allowance is half a unit of the last printed digit.
 
     A number's problem is the one that its row names, as problem or as workspace; without either,
     that of the default reading, or the only one of the experiment. Numbers that cover
     several problems are left out.
     """
-    rows, rule = [], "a path is no shorter than the shortest path"
-    for name, table in tables.items():
-        keys = _keys(table)
-        for _, row in table[
-            table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
-        ].iterrows():
-            bound = bounds[name]["bound"].get(
-                _problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan
-            )
-            if math.isnan(bound):
-                continue
-            where = place(row, [*keys, "metric", "statistic"])
-            fits = possible.printed(row["printed"]).high >= bound
-            rows.append(checked(name, where, rule, row["value"], bound, fits))
-    return rows
-
-
-def _problem(row: dict, bounds: pd.DataFrame) -> str | None:
-    """The problem of a published number, from the columns that describe it; None if it is
-    ambiguous.
-    """
-    named = row.get("problem", row.get("workspace"))
-    return (
-        named
-        if named in bounds.index
-        else bounds.index[0]
-        if named is None and len(bounds) == 1
-        else None
-    )
-
-
-def _keys(table: pd.DataFrame) -> list[str]:
-    """The columns of a table of published numbers that tell its rows apart."""
-    return [column for column in table if column not in NOT_KEYS]
+    rule = "a path is no shorter than the shortest path"
+    lengths = table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
+    for _, row in table[lengths].iterrows():
+        described = primary | row.to_dict()
+        problem = described.get("problem", described.get("workspace"))
+        if problem is None and len(bounds) == 1:
+            problem = bounds.index[0]
+        bound = bounds["bound"].get(problem, math.nan)
+        if not math.isnan(bound):
+            where = place(row, [*keys_of(table), "metric", "statistic"])
+            fits = possible.printed(row["as_printed"]).high >= bound
+            yield checked(item, where, rule, row["value"], bound, fits)
 
 
 # Rules that hold for any paper
@@ -111,10 +89,12 @@ def _keys(table: pd.DataFrame) -> list[str]:
 def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> list[dict]:
     """All rows of the rules that hold for any paper.
 
-    tables: published numbers, by table, as from `read_published`. specs: of each of them the table
+    tables: published numbers, by table, as from `printed_numbers`. specs: of each of them the table
     that reproduces it: the columns within whose values its rows are ranked, metrics of which only
     some runs count, the orders that its rows must keep.
     """
+    if not tables:
+        return []
     rows = []
     for name, table in tables.items():
         picks = [entry.metric for entry in specs[name].values if entry.where]
@@ -127,10 +107,10 @@ def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> li
 
 def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
     """What the statistics of one metric in one place can be beside each other."""
-    keys = _keys(table)
+    keys = keys_of(table)
     for rows in groups(table, [*keys, "metric"]):
         where, metric = place(rows.iloc[0], [*keys, "metric"]), METRICS[rows["metric"].iloc[0]]
-        texts = dict(zip(rows["statistic"], rows["printed"]))
+        texts = dict(zip(rows["statistic"], rows["as_printed"]))
         sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(sizes.max()) if len(sizes) else 0
         # Otherwise only some of these runs count, and how many is not printed.
@@ -206,11 +186,11 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
     columns: the key columns within whose values rows are ranked; those that the file lacks do not
     matter.
     """
-    keys = _keys(table)
+    keys = keys_of(table)
     ranks = table[(table["statistic"] == "mean") & (table["metric"] == "rank")]
     within = [column for column in columns if column in keys]
     for group in groups(ranks, within):
-        count, texts = len(group), group["printed"].to_list()
+        count, texts = len(group), group["as_printed"].to_list()
         if count < 2:
             continue
         numbers = [possible.printed(text) for text in texts]
@@ -222,7 +202,7 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
-            arithmetic = f"1 <= {row['printed']} <= {count}"
+            arithmetic = f"1 <= {row['as_printed']} <= {count}"
             of_row = place(row, [*keys, "metric"])
             yield checked(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
@@ -263,17 +243,17 @@ def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int
 def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     """Numbers that must rise or fall along a column, each beside the one before it."""
     numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
-    keys = _keys(table)
+    keys = keys_of(table)
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
     for group in groups(numbers, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
-            pair = [possible.printed(each["printed"]) for each in (before, row)]
+            pair = [possible.printed(each["as_printed"]) for each in (before, row)]
             fits = possible.in_order(*(pair if rule.direction == "up" else pair[::-1]))
             where = place(row, [*keys, "metric", "statistic"])
-            told = f"{before['printed']} {sign} {row['printed']}"
+            told = f"{before['as_printed']} {sign} {row['as_printed']}"
             yield checked(item, where, words, row["value"], before["value"], fits, told)
 
 
@@ -283,18 +263,17 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 
     Numbers with a tail lie farther from the middle than normal ones.
     """
-    lengths = [
+    every = pd.concat(
         table[table["metric"].isin(AT_LEAST_A_LENGTH)].assign(item=name)
         for name, table in tables.items()
+    )
+    keys = [
+        column for column in every if column not in ("statistic", "value", "as_printed", "unit")
     ]
-    every = pd.concat(lengths) if lengths else pd.DataFrame(columns=["n"])
-    keys = [column for column in every if column not in ("statistic", "value", "printed", "unit")]
     for n, own in every.groupby("n"):
-        filled = own.assign(**{key: own[key].astype(str) for key in keys})
-        wide = filled.pivot_table("value", keys, "statistic").reindex(
-            columns=["min", "mean", "max"]
-        )
-        wide = wide.dropna()
+        filled = own.astype(dict.fromkeys(keys, str))
+        wide = filled.pivot_table("value", keys, "statistic")
+        wide = wide.reindex(columns=["min", "mean", "max"]).dropna()
         if len(wide) < LEAST_MEANS or n < 2:
             continue
         apart, count = float(_from_middle(*wide.to_numpy().T)), len(wide)
@@ -322,8 +301,6 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """
     from scipy import stats
 
-    if not tables:
-        return
     every = pd.concat([table.assign(item=name) for name, table in tables.items()])
     whole = [METRICS[metric].step is not None for metric in every["metric"]]
     every = every[~every["statistic"].isin(["count", "share"]) & ~np.array(whole)]
@@ -331,7 +308,7 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     digits = "".join(
         digit
         for _, rows in every.groupby("metric", sort=False)
-        for text in rows["printed"]
+        for text in rows["as_printed"]
         for position, digit in enumerate(text.partition(".")[2], 1)
         if rows["value"].std() >= _LEAST_SPREAD * 10.0**-position
     )
@@ -360,30 +337,19 @@ def audited(
 
     experiment_files: by experiment. files: of published numbers, by table.
     """
-    published = {name: read_published(file) for name, file in files.items()}
-    bounds = {
-        name: pd.read_parquet(own.bounds).set_index("problem")
-        for name, own in experiment_files.items()
-    }
-    of_tables = {name: bounds[spec.experiment] for name, spec in job.tables.items()}
-    compared = {table: published[table] for table in of_tables}
-    # Bounds of maps that a paper does not print say nothing of its numbers.
-    on_its_maps = {name: table for name, table in compared.items() if name not in job.reconstructed}
-    primary = {name: spec.primary for name, spec in job.tables.items()}
-    rows = below_bound(on_its_maps, of_tables, primary) + of_any_paper(compared, job.tables)
+    published = {name: printed_numbers(file) for name, file in files.items()}
+    rows = []
+    for name, spec in job.tables.items():
+        # Bounds of maps that a paper does not print say nothing of its numbers.
+        if name not in job.reconstructed:
+            bounds = pd.read_parquet(experiment_files[spec.experiment].bounds).set_index("problem")
+            rows += below_bound(name, published[name], bounds, spec.primary)
+    rows += of_any_paper({name: published[name] for name in job.tables}, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
             made = problems.read(experiment_files[spec.experiment].problems)
             rows += identified.of_table(name, published[name], spec.identify, made)
     return table(job.study, rows + of_paper(published))
-
-
-def read_published(file: str) -> pd.DataFrame:
-    """Published numbers with an extra column `printed`, their text, which keeps trailing zeros."""
-    table = published_table(file)
-    if "value" in table:
-        table["printed"] = pd.read_csv(file, dtype=str)["value"]
-    return table
 
 
 def table(study: str, rows: list[dict]) -> pd.DataFrame:

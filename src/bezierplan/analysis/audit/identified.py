@@ -20,7 +20,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import possible
-from bezierplan.analysis.audit.rows import NOT_KEYS, checked, place
+from bezierplan.analysis.audit.rows import checked, place
+from bezierplan.analysis.results import keys_of
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid
@@ -65,6 +66,7 @@ class Ways(NamedTuple):
     lengths: np.ndarray
 
 
+@lru_cache(maxsize=4)
 def ways(grid: Grid) -> Ways:
     """All free edges between centres of free cells, of which no one passes along others: an edge is
     what a planner draws.
@@ -113,16 +115,16 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     if not np.allclose([grid.centre(cell) for cell in cells], ends):
         return None
     printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
-    ways = _ways_of(grid.occupied.tobytes(), grid.occupied.shape)
-    first, last = (int(np.searchsorted(ways.cells, cell)) for cell in cells)
-    reached = _reached(ways, first, printed + NEARBY + half, last, edges)
+    free = ways(grid)
+    first, last = (int(np.searchsorted(free.cells, cell)) for cell in cells)
+    reached = _reached(free, first, printed + NEARBY + half, last, edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
-    paths = _paths(ways, reached, last, printed, half)
+    paths = _paths(free, reached, last, printed, half)
     legs = itertools.pairwise(paths[0]) if paths else ()
     return Identification(
-        [tuple(int(ways.cells[place]) for place in path) for path in paths],
+        [tuple(int(free.cells[place]) for place in path) for path in paths],
         _chance(every, printed, half),
-        sum(ways.lengths[one, other] for one, other in legs) if paths else math.nan,
+        sum(free.lengths[one, other] for one, other in legs) if paths else math.nan,
     )
 
 
@@ -161,11 +163,6 @@ def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Id
     return of_moves(problem, value, entry.diagonal)
 
 
-@lru_cache(maxsize=4)
-def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
-    return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
-
-
 def in_words(identification: Identification) -> str:
     """The paths and the chance of a match."""
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
@@ -184,10 +181,10 @@ def of_table(
     """Rows of the audit: each published number for which an enumeration is declared, and one row a
     declaration with the chance of all.
 
-    published: with the column `printed`, as from `audit.read_published`. problems: by name; a
+    published: as from `results.printed_numbers`. problems: by name; a
     number's is in its column `problem`. A number that no path has is no contradiction.
     """
-    keys = published.columns.difference(NOT_KEYS, sort=False)
+    keys = keys_of(published)
     for entry in entries:
         tries = []
         what = (
@@ -200,7 +197,7 @@ def of_table(
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            path = sought(entry, problem, row["value"], possible.decimals(row["printed"]))
+            path = sought(entry, problem, row["value"], possible.decimals(row["as_printed"]))
             if path is None:
                 continue
             tries.append(path)

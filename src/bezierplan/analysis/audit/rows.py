@@ -5,9 +5,6 @@ from collections.abc import Iterable, Mapping
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
 
-NOT_KEYS = ("metric", "statistic", "n", "unit", "value", "printed")
-"""Columns of a table of published numbers that do not tell its rows apart."""
-
 RELATIONS = {
     "<": operator.lt,
     "<=": operator.le,

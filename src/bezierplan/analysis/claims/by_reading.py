@@ -64,12 +64,11 @@ def told(
         fitting = open_ones[open_ones["p"] >= LEAST_P]
         kept = (fitting if len(fitting) else open_ones).set_index("reading")["meaning"].fillna("")
     claims = claims.assign(readings="")
-    for index, claim in claims[claims["primary"].astype(bool)].iterrows():
-        if claim["verdict"] not in SIDES:
-            continue
+    primary, decided = claims["primary"].astype(bool), claims["verdict"].isin(SIDES)
+    for index, claim in claims[primary & decided].iterrows():
         words = []
-        others = claims[(claims["id"] == claim["id"]) & ~claims["primary"].astype(bool)]
-        others = others[others["verdict"].isin(SIDES) & (others["verdict"] != claim["verdict"])]
+        others = claims[~primary & decided & (claims["id"] == claim["id"])]
+        others = others[others["verdict"] != claim["verdict"]]
         for verdict, variants in others.groupby("verdict", sort=False)["variant"]:
             words.append(f"{verdict} with {_named([names[each] for each in variants], 'variants')}")
         if len(readings):

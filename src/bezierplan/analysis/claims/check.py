@@ -70,10 +70,19 @@ FAILURES = (
 GROUP_KEYS = ("groups", "than", "pairs", "order")
 
 # What the keys of some kinds are in all the others.
-_NEUTRAL = dict.fromkeys([*GROUP_KEYS, "statistic", "direction", "together", "paired"])
-_NEUTRAL |= dict.fromkeys(["event", "pick", "work"])
-_NEUTRAL |= {"metric": "", "effect_unit": "", "scale": "absolute", "failures": "drop"}
-_NEUTRAL |= {"target": 0, "least": 0, "margin": math.nan, "experiment": [], "pool": []}
+_NEUTRAL = dict.fromkeys(
+    [*GROUP_KEYS, "statistic", "direction", "together", "paired", "event", "pick", "work"]
+) | {
+    "metric": "",
+    "effect_unit": "",
+    "scale": "absolute",
+    "failures": "drop",
+    "target": 0,
+    "least": 0,
+    "margin": math.nan,
+    "experiment": [],
+    "pool": [],
+}
 
 
 class ClaimCheck(Model):

@@ -50,7 +50,7 @@ from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
-from bezierplan.analysis.claims.effects import Comparison, Finding, MarkedComparison, Terms
+from bezierplan.analysis.claims.effects import Finding, MarkedComparison, Terms
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, name_of, variants, with_work
@@ -169,7 +169,6 @@ def _findings(
 ) -> list[MarkedComparison]:
     """The comparisons of one check with their findings. Raises Untestable."""
     kind = kind_of(check)
-    judged: list[tuple[Terms, Comparison | None, Finding]]
     if not isinstance(check, OfRuns):
         judged = [
             (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
@@ -298,9 +297,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
             "unit": _unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,
-            "place": json.dumps(
-                {key: getattr(at, "item", lambda at=at: at)() for key, at in entry.place}
-            ),
+            "place": json.dumps(dict(entry.place), default=np.generic.item),
             "counted": entry.counted,
             "effect_published": effect_published,
             "published": {True: "holds", False: "fails", None: "not printed"}[agrees],

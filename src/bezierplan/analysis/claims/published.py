@@ -9,6 +9,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import OfRuns
+from bezierplan.analysis.results import keys_of
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -67,7 +68,7 @@ def printed_table(
     table_number: int, experiment: str, table: pd.DataFrame, metric: str
 ) -> PrintedTable:
     """The numbers of a metric in a table of published numbers."""
-    keys = table.columns[: table.columns.get_loc("metric")].to_list()
+    keys = keys_of(table)
     rows = table[table["metric"] == metric].dropna(subset=keys)
     cells: dict[tuple, PrintedCell] = {}
     for number, row in zip(rows.index, rows.to_dict("records")):

@@ -35,8 +35,12 @@ _TIMES = 2.0
 MOST_LISTED = 4
 """Up to this many names are listed, otherwise only counted."""
 
-_NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one run"}
-_NEEDS["as printed"] = "in all runs of the paper"
+_NEEDS = {
+    "all": "in every run",
+    "none": "in no run",
+    "some": "in at least one run",
+    "as printed": "in all runs of the paper",
+}
 
 
 class PrintedTerms(NamedTuple):
@@ -47,10 +51,10 @@ class PrintedTerms(NamedTuple):
     place: str
 
 
-def named(row: Row, check: ClaimCheck, labels: Mapping[str, str]) -> PrintedTerms:
+def named(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> PrintedTerms:
     """The groups and the place of a row, None where it is empty."""
     place = places(json.loads(row["place"] or "{}"), labels)
-    if not check.against:
+    if not (check and check.against):
         return PrintedTerms("", "", place)
     groups = (str(_group(check, row[end])) for end in ("group", "other"))
     return PrintedTerms(*(column_name(group, labels) for group in groups), place)
@@ -60,12 +64,12 @@ def title(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
     """The name of a comparison: what is compared, and where. check: None if it is no more."""
     terms = [row[name] for name in ("group", "relation", "other")]
     words = ["" if term is None else _plain(term) for term in terms]
-    if check and check.against:
-        words[0], words[2], _ = named(row, check, labels)
+    names = named(row, check, labels)
+    if names.group:
+        words[0], words[2] = names.group, names.other
     if row["together"]:
         words = [f"all {row['together']:.0f} together"]
-    compared = " ".join(filter(None, words))
-    return ", ".join(filter(None, [compared, places(json.loads(row["place"] or "{}"), labels)]))
+    return ", ".join(filter(None, [" ".join(filter(None, words)), names.place]))
 
 
 def variants_named(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[str, str]:
@@ -163,7 +167,7 @@ def _apart(row: Row, check: ClaimCheck) -> str:
         return "equal to"
     if check.relative and effect > _TIMES:
         return f"{number(1 + effect)} times"
-    return f"{_size(row, check)} {_side(effect)} than"
+    return f"{_amount(abs(effect), row, check)} {_side(effect)} than"
 
 
 def _side(effect: float) -> str:
@@ -188,9 +192,10 @@ def _trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
     """Of a quantity that should rise or fall along another."""
     along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
     claimed = {"up": "rises", "down": "falls"}[check.direction]
+    size = _amount(abs(row["effect"]), row, check)
     return (
-        f"{_quantity(row)} {moves} by {_size(row, check)}{_interval(row, check)} from the least to "
-        f"the largest {along}; the claim says that it {claimed}{_margin(row, check)}"
+        f"{_quantity(row)} {moves} by {size}{_interval(row, check)} from the "
+        f"least to the largest {along}; the claim says that it {claimed}{_margin(row, check)}"
     )
 
 
@@ -203,7 +208,7 @@ def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
             f"the claim needs that, in {picked}, {happens}; "
             f"{'this holds' if row['effect'] else 'this does not hold'}"
         )
-    needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
+    needed = _NEEDS.get(check.threshold)
     needed = needed or f"in {_plain(check.direction)} {100 * check.threshold:g} %"
     low, high = row["low95"], row["high95"]
     between = (
@@ -276,10 +281,6 @@ def meaning(metric: str) -> str:
 
 def _unit(row: Row) -> str:
     return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
-
-
-def _size(row: Row, check: ClaimCheck) -> str:
-    return _amount(abs(row["effect"]), row, check)
 
 
 def _amount(value: float, row: Row, check: ClaimCheck) -> str:
@@ -426,10 +427,7 @@ def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
     held = sum(each.mark == sought for each in comparisons)
     if held in (0, len(comparisons)):
         return ""
-    factor = _best_factor(comparisons, sought)
-    marks: dict[Any, list[bool]] = {}
-    for each in comparisons if factor else []:
-        marks.setdefault(each.factors[factor], []).append(each.mark == sought)
+    factor, marks = _best_split(comparisons, sought)
     full = [value for value, own in marks.items() if all(own)]
     words = [_chosen(factor, full, list(marks), labels)] if full else []
     words += [
@@ -443,34 +441,33 @@ def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
     return ("" if sought == "+" else "the contrary ") + "; ".join(words)
 
 
-def _best_factor(comparisons: Sequence[Entry], sought: str) -> str | None:
+def _best_split(comparisons: Sequence[Entry], sought: str) -> tuple[str, dict[Any, list[bool]]]:
     """The factor of all comparisons with the least mixed values (Gini impurity), the first among
-    equals; None if none has two values.
+    equals, and by value which of its comparisons have the mark; empty if none has two values.
     """
-    best, least = None, np.inf
-    for factor in [
-        factor
-        for factor in comparisons[0].factors
-        if all(factor in each.factors for each in comparisons)
-    ]:
+    best, least = ("", {}), np.inf
+    for factor in comparisons[0].factors:
+        if any(factor not in each.factors for each in comparisons):
+            continue
         parts: dict[Any, list[bool]] = {}
         for each in comparisons:
             parts.setdefault(each.factors[factor], []).append(each.mark == sought)
         impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
         if len(parts) > 1 and impurity < least - 1e-9:
-            best, least = factor, impurity
+            best, least = (factor, parts), impurity
     return best
 
 
 def _chosen(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
     """Words for a subset of a factor's values."""
     others = [value for value in every if value not in subset]
+    before = _before(factor)
     few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
-    if few and _before(factor).startswith("at "):
-        return f"{_before(factor)}other than {_joined(others, labels)}"
+    if few and before.startswith("at "):
+        return f"{before}other than {_joined(others, labels)}"
     if few:
-        return f"{_before(factor)}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
-    return f"{_before(factor)}{_joined(subset, labels)}"
+        return f"{before}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
+    return f"{before}{_joined(subset, labels)}"
 
 
 def _joined(values: list, labels: Mapping[str, str]) -> str:

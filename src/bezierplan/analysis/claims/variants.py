@@ -51,7 +51,7 @@ def has_runs(check: ClaimCheck) -> bool:
 
 
 def _exchanged(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck:
-    keys = {"metric": ["metric"], "experiment": ["experiment"]}.get(column, [])
+    keys = [column] if column in ("metric", "experiment") else []
     keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
     written = check.model_fields_set.intersection(keys)
     changed = {key: _replaced(getattr(check, key), pairs) for key in written}

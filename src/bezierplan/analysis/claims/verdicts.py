@@ -101,11 +101,11 @@ def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:
 
 def _as_tested(finding: Finding) -> Finding:
     """A finding whose mark does not follow from p as one that has the same mark by its p."""
-    toward = {"+": 1, "-": -1, "0": 0, "?": 0}
     if not finding.mark:
         return finding
+    toward = {"+": 1, "-": -1}.get(finding.mark, 0)
     p = 1.0 if finding.mark == "?" else 0.0
-    return finding._replace(toward=toward[finding.mark], p=p, negligible=finding.mark == "0")
+    return finding._replace(toward=toward, p=p, negligible=finding.mark == "0")
 
 
 def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:

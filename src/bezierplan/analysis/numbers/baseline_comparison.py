@@ -36,10 +36,26 @@ from bezierplan.running.inputs import Files
 from bezierplan.workspaces.seeds import generator
 
 COLUMNS = (
-    *("study", "method", "baseline", "proposed", "conditions", "feasible", "feasible_baseline"),
-    *("compared", "length", "bent", "curvature", "bending", "cpu"),
-    *("gap", "gap_low", "gap_high", "evaluations"),
-    *("restarts", "feasible_restarts", "gap_restarts"),
+    "study",
+    "method",
+    "baseline",
+    "proposed",
+    "conditions",
+    "feasible",
+    "feasible_baseline",
+    "compared",
+    "length",
+    "bent",
+    "curvature",
+    "bending",
+    "cpu",
+    "gap",
+    "gap_low",
+    "gap_high",
+    "evaluations",
+    "restarts",
+    "feasible_restarts",
+    "gap_restarts",
 )
 
 # A path whose largest curvature times its length is below this, in radians, is straight.
@@ -63,10 +79,12 @@ def measured(
 
     with_baseline: whether the baseline has a row too.
     """
-    medians = pd.concat(
-        [_medians(results).assign(experiment=name) for name, results in experiments.items()],
-        ignore_index=True,
+    values = pd.concat(
+        [_values(results).assign(experiment=name) for name, results in experiments.items()]
     )
+    groups = values.groupby(["experiment", "condition", "method"], sort=False)
+    runs = groups["free"].agg(free="sum", runs="count")
+    medians = groups[[*RATIOS, "evaluations"]].median().join(runs).reset_index()
     of_baseline = medians["method"] == baseline
     pairs = medians[~of_baseline | with_baseline].merge(
         medians[of_baseline], on=["experiment", "condition"], suffixes=("", "_baseline")
@@ -93,28 +111,20 @@ def measured(
         )
     )
     restarts = (rows["cpu"].max() / rows["cpu"]).astype(int)
-    gaps = {name: _gaps(experiments, name, restarts[name]) for name in rows.index}
+    gaps = {
+        name: _gaps(values[values["method"] == name], name, restarts[name]) for name in rows.index
+    }
     rows = rows.join(pd.DataFrame.from_dict(gaps, orient="index"))
     return rows.reset_index(names="method").reindex(columns=COLUMNS[1:])
 
 
-def _gaps(experiments: dict[str, Results], method: str, restarts: int) -> dict[str, float]:
-    """The columns about gaps of a method."""
-    values = pd.concat(
-        pd.DataFrame(
-            {
-                "condition": name + "/" + own["condition"],
-                "gap": metrics.values(own, "gap", found.problems),
-            }
-        )
-        for name, found in experiments.items()
-        for own in [found.runs[found.runs["method"] == method]]
-    )
+def _gaps(values: pd.DataFrame, method: str, restarts: int) -> dict[str, float]:
+    """The columns about gaps of a method, from its rows of values."""
     free = np.sort(values["gap"].dropna())
     low, high = statistics.interval("median", free, generator(f"gap/{method}"))
     # The shortest of k runs is below its median with the chance 1/2, so a single run is with the
     # chance 1 - 2 ** (-1 / k).
-    conditions = values.fillna({"gap": np.inf}).groupby("condition")["gap"]
+    conditions = values.fillna({"gap": np.inf}).groupby(["experiment", "condition"])["gap"]
     best = conditions.agg(np.quantile, 1 - 0.5 ** (1 / restarts), method="inverted_cdf")
     failing = conditions.agg(lambda gaps: np.isinf(gaps).mean())
     return {
@@ -151,26 +161,18 @@ def of_studies(
     return rows.reindex(columns=COLUMNS)
 
 
-def _medians(results: Results) -> pd.DataFrame:
-    """One row for each condition and method: medians of length, curvature and CPU time, and the
-    numbers of runs and of feasible ones.
-    """
+def _values(results: Results) -> pd.DataFrame:
+    """One row for each run, with all that is compared of it."""
     runs, problems = results.runs, results.problems
     cornered = metrics.values(runs, "corners", problems) > 0
-    values = runs[["condition", "method"]].assign(
+    return runs[["condition", "method"]].assign(
         length=metrics.values(runs, "length", problems),
         curvature=metrics.values(runs, "max_curvature", problems).mask(cornered, np.inf),
         bending=metrics.values(runs, "bending_energy", problems).mask(cornered, np.inf),
         evaluations=runs["evaluations"],
         cpu=runs["cpu_s"],
         free=runs["feasible"].astype(bool),
-    )
-    groups = values.groupby(["condition", "method"], sort=False)
-    return (
-        groups[[*RATIOS, "evaluations"]]
-        .median()
-        .join(groups["free"].agg(free="sum", runs="count"))
-        .reset_index()
+        gap=metrics.values(runs, "gap", problems),
     )
 
 

@@ -43,6 +43,7 @@ number. Columns:
 """
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +53,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import identified, possible
 from bezierplan.analysis.numbers import tables
-from bezierplan.analysis.results import Results, groups, published_table, select
+from bezierplan.analysis.results import Results, groups, keys_of, printed_numbers, select
 from bezierplan.analysis.table_kinds import Identify, Pivot
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
@@ -92,11 +93,30 @@ UNDEFINED = "quantity that the paper does not define"
 """Why a number decides nothing, wherever it lies (`decides_nothing`)."""
 
 COLUMNS = [
-    *("metric", "statistic", "unit", "n_published", "value_published"),
-    *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
-    *("low95_ours", "high95_ours", "low95_predicted", "high95_predicted", "quantile_published"),
-    *("in_range", "power", "verdict", "why"),
-    *("identified", "possible", "share_feasible", "bound", "gap", "primary"),
+    "metric",
+    "statistic",
+    "unit",
+    "n_published",
+    "value_published",
+    "n_ours",
+    "n_asked",
+    "value_ours",
+    "value_ours_scaled",
+    "low95_ours",
+    "high95_ours",
+    "low95_predicted",
+    "high95_predicted",
+    "quantile_published",
+    "in_range",
+    "power",
+    "verdict",
+    "why",
+    "identified",
+    "possible",
+    "share_feasible",
+    "bound",
+    "gap",
+    "primary",
 ]
 
 
@@ -107,8 +127,7 @@ def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
     if file is None:
         columns = ("metric", "statistic", "n", "unit", "value", "as_printed")
         return pd.DataFrame(columns=[*spec.key_columns, *columns])
-    texts = pd.read_csv(file, dtype=str, keep_default_na=False)["value"]
-    return as_read(published_table(file).assign(as_printed=texts), spec.reads)
+    return as_read(printed_numbers(file), spec.reads)
 
 
 def as_read(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
@@ -138,11 +157,13 @@ def compare(
     them. name: `study/table`, which seeds each row's random draws. reconstructed, votes: as in
     `decides_nothing`. by_reading: as from `of_tables`, for each reading of the map.
     """
-    key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
+    key_columns = keys_of(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
-    methods = one_or_list(spec.where.get("method", []))
-    beside = _beside(methods, variant_of, baselines) if "method" in keys else []
-    spec = spec.but(where=spec.where | {"method": methods + beside}) if beside else spec
+    methods, beside = one_or_list(spec.where.get("method", [])), []
+    if methods and "method" in keys:
+        variants = [variant for variant, method in variant_of.items() if method in methods]
+        beside = [name for name in variants + baselines if name not in methods]
+        spec = spec.but(where=spec.where | {"method": methods + beside})
     ours = tables.cells(results, spec, keys, beside)
     ours = tables.placed(ours, spec, list(results.problems))
     marked = published.assign(impossible=impossible_ranks(published, spec))
@@ -163,15 +184,12 @@ def compare(
     }
     rows = [
         _described(row, keys, name, _rivals(row, key_columns, printed))
+        | {"identified": _identified(row, spec.identify, results.problems)}
         for row in both.to_dict("records")
     ]
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    table["identified"] = pd.Series(
-        [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
-        dtype=object,
-    )
     on_open_map = pd.Series(reconstructed, both.index)
     if by_reading is not None:
         own = by_reading[by_reading["table"] == name.partition("/")[2]]
@@ -180,7 +198,9 @@ def compare(
     open_ones = (reasons != "") & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(open_ones, "inconclusive")
     table["why"] = table["why"].mask(open_ones, reasons)
-    table["primary"] = _is_primary(table, spec.primary, variant_of)
+    table["primary"] = table.index.isin(select(table, spec.primary).index)
+    if "method" in table:
+        table["primary"] &= ~table["method"].isin(variant_of)
     whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
     marks = ("in_range", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
@@ -202,13 +222,12 @@ def decides_nothing(
       fitted.
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
-    voting = [
-        select(numbers, where | {"metric": metric}) for metric, where in (votes or {}).items()
-    ]
-    voted = numbers.index.isin([index for each in voting for index in each.index])
+    voted = pd.Series(votes is None, numbers.index)
+    for metric, where in (votes or {}).items():
+        voted |= numbers.index.isin(select(numbers, where | {"metric": metric}).index)
     reasons = pd.Series("", numbers.index)
     for reason, whose in (
-        (FITTED, ~voted & (votes is not None)),
+        (FITTED, ~voted),
         (ONE_DRAW, numbers["draws"].eq(1)),
         (NO_MAP, on_open_map),
         (UNDEFINED, numbers["metric"].isin(vague)),
@@ -223,14 +242,16 @@ def of_tables(
     """The printed numbers of those tables that show some results, with the columns table, keys of
     all tables, metric, statistic, in_range. files: of published numbers.
     """
-    own = {name: spec for name, spec in tables.items() if spec.experiment in results}
     frames = []
-    for name, spec in own.items():
+    for name, spec in tables.items():
+        if spec.experiment not in results:
+            continue
         published = read_published(files[Path(spec.published).stem], spec)
         compared = compare(results[spec.experiment], spec, published, {}, [], f"{study}/{name}")
         printed = compared[compared["value_published"].notna()]
-        keys = published.columns[: published.columns.get_loc("metric")]
-        frames.append(printed[[*keys, "metric", "statistic", "in_range"]].assign(table=name))
+        frames.append(
+            printed[[*keys_of(published), "metric", "statistic", "in_range"]].assign(table=name)
+        )
     return pd.concat(frames, ignore_index=True)
 
 
@@ -253,22 +274,25 @@ def counted_as(numbers: pd.DataFrame) -> pd.Series:
     return numbers["verdict"].mask(numbers["identified"].notna(), "identified")
 
 
-def _tested(statistic: str) -> str:
-    """The statistic with which a printed one is compared: the median with one that the paper does
-    not state.
+def _quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
+    """Metric of each number, and the statistic with which a printed one is compared: the median
+    with one that the paper does not state.
     """
-    return "median" if statistic == "unstated" else statistic
+    return zip(numbers["metric"], numbers["statistic"].replace("unstated", "median"))
 
 
 def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
     """Raise ValueError if a printed number that belongs into a table of the paper's form has no
     cell there.
     """
-    shown = {(entry.metric, _tested(each)) for entry in spec.values for each in entry.statistics}
+    shown = {
+        (entry.metric, each.replace("unstated", "median"))
+        for entry in spec.values
+        for each in entry.statistics
+    }
     where = {column: values for column, values in spec.where.items() if column in both}
     own = select(both[both["value_published"].notna() & both["table_row"].isna()], where)
-    quantities = zip(own["metric"], map(_tested, own["statistic"]))
-    lost = own[[quantity in shown for quantity in quantities]]
+    lost = own[[quantity in shown for quantity in _quantities(own)]]
     if len(lost):
         first = lost.iloc[0]
         place = ", ".join(
@@ -278,16 +302,6 @@ def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
             f"{name}: {len(lost)} printed numbers have no cell in the table, such as "
             f"{first['as_printed']} ({place})"
         )
-
-
-def _is_primary(
-    table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]
-) -> np.ndarray:
-    """Which rows (n,) are of the default reading. primary: column -> the value that it has
-    there.
-    """
-    chosen = table.index.isin(select(table, primary).index)
-    return chosen & ~table["method"].isin(variant_of) if "method" in table else chosen
 
 
 def _identified(
@@ -331,37 +345,21 @@ def _side_by_side(
 
     key_columns: the key columns of the published numbers.
     """
-    theirs = published.rename(
-        columns={"n": "n_published", "value": "value_published", "statistic": "printed"}
-    ).drop(columns="unit")
-    theirs = theirs.astype({key: ours[key].dtype for key in key_columns}).assign(
-        statistic=theirs["printed"].map(_tested)
+    theirs = published.rename(columns={"n": "n_published", "value": "value_published"})
+    theirs = theirs.drop(columns="unit").astype({key: ours[key].dtype for key in key_columns})
+    names = dict(zip(_quantities(published), published["statistic"]))
+    ours, theirs = (
+        table.assign(statistic=[names.get(each, each[1]) for each in _quantities(table)])
+        for table in (ours, theirs)
     )
-    ours = ours.assign(statistic=ours["statistic"].map(_tested))
     if "method" in key_columns:
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
-    both = ours.merge(
-        theirs.drop(columns="printed"), how="outer", on=[*key_columns, "metric", "statistic"]
-    )
+    both = ours.merge(theirs, how="outer", on=[*key_columns, "metric", "statistic"])
     if "method" in key_columns:
         both = both.assign(
             printed_method=both["method"], method=both["own_method"].fillna(both["method"])
         )
-    printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
-    return both.assign(
-        statistic=[
-            printed.get(quantity, quantity[1])
-            for quantity in zip(both["metric"], both["statistic"])
-        ]
-    )
-
-
-def _beside(methods: list[str], variant_of: dict[str, str], baselines: list[str]) -> list[str]:
-    """Methods that stand beside those that a table selects: their variants, and the baselines; none
-    if it shows all.
-    """
-    variants = [variant for variant, method in variant_of.items() if method in methods]
-    return [name for name in variants + baselines if methods and name not in methods]
+    return both
 
 
 def _rivals(
@@ -376,7 +374,7 @@ def _rivals(
     keys = [key for key in ("metric", "statistic", *key_columns) if key != "method"]
     same_place = np.logical_and.reduce([printed[key] == row[key] for key in keys])
     # A variant's own name is in no published row; its number is that of its published method.
-    own = printed["method"] == row.get("printed_method", row["method"])
+    own = printed["method"] == row["printed_method"]
     return printed["value"][same_place & ~own].astype(float)
 
 
@@ -442,7 +440,6 @@ def _judged(
     if in_range is None:
         return cell
     ends = (prediction[0] - half, prediction[1] + half)
-    can_fail = not in_range or statistics.can_fail(published, ours, prediction, limits)
     # To exclude a number that no run can have, or one on the other side of ours, says nothing.
     least = row["bound"] if row["metric"] in metrics.AT_LEAST_A_LENGTH else -math.inf
     near = np.array([ours * (1 + math.copysign(MATTERS, (published - ours) * ours))])
@@ -454,10 +451,11 @@ def _judged(
     others = rivals if enough else near
     beyond = (others < ends[0]) | (others > ends[1])
     power = float(beyond.mean()) if len(others) else 0.0
-    if not in_range or (can_fail and power >= LEAST_POWER):
-        why = ""
-    else:
-        why = NO_END if not can_fail else TOO_WIDE if enough else OFF_OURS
+    why = ""
+    if in_range and not statistics.can_fail(published, ours, prediction, limits):
+        why = NO_END
+    elif in_range and power < LEAST_POWER:
+        why = TOO_WIDE if enough else OFF_OURS
     verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
     return cell | {"power": power, "verdict": verdict, "why": why}
 

@@ -16,7 +16,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, repeated, select
-from bezierplan.analysis.table_kinds import Pivot, TableValue
+from bezierplan.analysis.table_kinds import Pivot
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
@@ -71,25 +71,11 @@ class Cell(NamedTuple):
     groups: tuple[np.ndarray, ...] | None
 
 
-class _Entry(NamedTuple):
-    """An entry of `values` with what it needs of each run: whether it asks for it, and counts it;
-    its metric, bound and gap, and the least value that it can have.
-    """
-
-    spec: TableValue
-    selects: np.ndarray
-    counts: np.ndarray
-    values: np.ndarray
-    bound: np.ndarray
-    gap: np.ndarray
-    least: np.ndarray
-
-
 def cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
-    """The numbers behind a table: one row for each group of runs with equal keys, entry of
-    `values`, and statistic; its columns are the keys and the fields of a `Cell`.
+    """The numbers behind a table: one row for each entry of `values`, group of runs with equal
+    keys, and statistic; its columns are the keys and the fields of a `Cell`.
 
     beside: methods outside the table among those of its `where`, which metrics that compare methods
     leave out.
@@ -100,83 +86,62 @@ def cells(
 
     @cache
     def measured(metric: str) -> np.ndarray:
-        return _measured(runs, metric, results, beside).to_numpy()
+        return metrics.values(runs, metric, results.problems).to_numpy()
 
-    entries = []
-    for entry in spec.values:
+    rows, by_keys = [], runs[keys].groupby(keys, dropna=False)
+    for number, entry in enumerate(spec.values):
         metric, own = metrics.METRICS[entry.metric], select(runs, entry.where)
         selects, counts = runs.index.isin(own.index), once
         if metric.among_rows:
             # It compares those that the entry's `where` leaves, and among others even a repeated
             # run has a rank of its own.
-            values = _measured(own, entry.metric, results, beside).reindex(runs.index).to_numpy()
-            counts = True
+            among = own[~own["method"].isin(beside)]
+            compared = metrics.values(among, entry.metric, results.problems)
+            values, counts = compared.reindex(runs.index).to_numpy(), True
         else:
             values = measured(entry.metric)
         least = entry.least or metric.least
         columns = runs[[metric.bound]].assign(least=runs.get(least, least))
         bound, least = columns.to_numpy(dtype=float).T
-        entries.append(
-            _Entry(entry, selects, selects & counts, values, bound, measured(metric.gap), least)
-        )
-    rows = []
-    for key, group in runs[keys].groupby(keys, dropna=False):
-        for number, entry in enumerate(entries):
-            cell = _cell(runs, group.index.to_numpy(), number, entry, spec.within)
-            rows += [[*key, *cell._replace(statistic=name)] for name in entry.spec.statistics]
+        gap, counts = measured(metric.gap), selects & counts
+        for key, group in by_keys:
+            places = group.index.to_numpy()
+            of_entry, counted = places[selects[places]], places[counts[places]]
+            # A run without a value counts nowhere.
+            chosen = counted[~np.isnan(values[counted])]
+            numbers, groups = values[chosen], None
+            if spec.within:
+                units = runs[spec.within].to_numpy()[chosen]
+                # Tuples, because pandas would expand lists of arrays.
+                groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
+            cell = Cell(
+                runs=len(places),
+                draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
+                share_feasible=runs["feasible"].to_numpy()[places].mean(),
+                bound=_median(bound[places]),
+                gap=_median(gap[places]),
+                least=np.fmin.reduce(least[places]),
+                most=metric.most,
+                value=number,
+                metric=entry.metric,
+                statistic="",
+                decimals=entry.decimals,
+                size=len(counted),
+                numbers=np.sort(numbers),
+                by_run=pd.Series(
+                    values[of_entry],
+                    pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
+                ),
+                groups=groups,
+            )
+            rows += [[*key, *cell._replace(statistic=name)] for name in entry.statistics]
     # Decimals of type object stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
-
-
-def _cell(
-    runs: pd.DataFrame, places: np.ndarray, number: int, entry: _Entry, within: str | None
-) -> Cell:
-    """The cell of an entry and of the runs at some places, without its statistic."""
-    of_entry, counted = (places[mask[places]] for mask in (entry.selects, entry.counts))
-    # A run without a value counts nowhere.
-    chosen = counted[~np.isnan(entry.values[counted])]
-    numbers, groups = entry.values[chosen], None
-    if within:
-        units = runs[within].to_numpy()[chosen]
-        # Tuples, because pandas would expand lists of arrays.
-        groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
-    return Cell(
-        runs=len(places),
-        draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
-        share_feasible=runs["feasible"].to_numpy()[places].mean(),
-        bound=_median(entry.bound[places]),
-        gap=_median(entry.gap[places]),
-        least=np.fmin.reduce(entry.least[places]),
-        most=metrics.METRICS[entry.spec.metric].most,
-        value=number,
-        metric=entry.spec.metric,
-        statistic="",
-        decimals=entry.spec.decimals,
-        size=len(counted),
-        numbers=np.sort(numbers),
-        by_run=pd.Series(
-            entry.values[of_entry],
-            pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
-        ),
-        groups=groups,
-    )
 
 
 def _median(values: np.ndarray) -> float:
     """The median of values (n,), NaN left out; NaN if no others remain."""
     return statistics.statistic("median", values[~np.isnan(values)])
-
-
-def _measured(
-    runs: pd.DataFrame, metric: str, results: Results, beside: Sequence[str]
-) -> pd.Series:
-    """A metric of each run; if it compares a table's methods, NaN for runs of methods outside the
-    table (`beside`).
-    """
-    counted = runs
-    if metrics.METRICS[metric].among_rows:
-        counted = runs[~runs["method"].isin(beside)]
-    return metrics.values(counted, metric, results.problems).reindex(runs.index)
 
 
 def placed(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:

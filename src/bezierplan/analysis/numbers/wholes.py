@@ -28,7 +28,7 @@ import pandas as pd
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit.rows import place
 from bezierplan.analysis.numbers import comparison, tables
-from bezierplan.analysis.results import Results
+from bezierplan.analysis.results import Results, keys_of
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator
 
@@ -36,9 +36,22 @@ LEAST = 4
 """Methods that a column needs: of fewer, no order is unlikely."""
 
 COLUMNS = [
-    *("study", "table", "place", "metric", "methods", "quantity", "printed", "ours"),
-    *("low95_predicted", "high95_predicted", "in_range", "chance", "chance_any_order"),
-    *("outside", "together", "why"),
+    "study",
+    "table",
+    "place",
+    "metric",
+    "methods",
+    "quantity",
+    "printed",
+    "ours",
+    "low95_predicted",
+    "high95_predicted",
+    "in_range",
+    "chance",
+    "chance_any_order",
+    "outside",
+    "together",
+    "why",
 ]
 
 REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW, comparison.FITTED}
@@ -55,7 +68,7 @@ def of_table(
     numbers: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
     whether runs with equal repeat numbers start alike.
     """
-    keys = numbers.columns[: numbers.columns.get_loc("metric")].to_list()
+    keys = keys_of(numbers)
     means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["in_range", "value_ours"]).astype(dict.fromkeys(keys, object))
     rows = []
@@ -63,14 +76,14 @@ def of_table(
         cell = [*keys, "metric", "statistic"]
         ours = tables.cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
         column = [key for key in cell if key not in ("method", "statistic")]
-        for (*_, metric), group in means.merge(ours).groupby(column, sort=False):
+        for (*values, metric), group in means.merge(ours).groupby(column, sort=False):
             if len(group) >= LEAST:
-                first = group.iloc[0][column[:-1]]
-                where = json.dumps(first.to_dict())
-                same = dict(zip(COLUMNS, [*name.split("/"), where, metric, len(group)]))
+                where = dict(zip(column, values))
+                told = [*name.split("/"), json.dumps(where), metric, len(group)]
+                same = dict(zip(COLUMNS, told))
                 same["together"] = paired or bool((group["draws"] > 1).all())
                 same["why"] = max(REASONS.intersection(group["why"]), default="")
-                rng = generator(f"{name}/{place(first, first.index)}/{metric}/wholes")
+                rng = generator(f"{name}/{place(where, where)}/{metric}/wholes")
                 rows += [same | row for row in _of(group, same["together"], rng)]
     return pd.DataFrame(rows, columns=COLUMNS)
 
@@ -121,9 +134,15 @@ def _deviations(means: np.ndarray, methods: np.ndarray, tail: float) -> Iterator
         scale = np.maximum(off[1:].std(axis=0), _EXACT)
         squares = ((off - off[1:].mean(axis=0)) / scale) ** 2
         sums = squares.sum(axis=1)
-        row = {"quantity": quantity, "methods": len(methods), "printed": outside.sum()}
-        row |= {"chance": _share(sums[1:] >= sums[0]), "outside": ", ".join(methods[outside])}
-        yield row | {"in_range": row["chance"] >= 2 * tail}
+        chance = _share(sums[1:] >= sums[0])
+        yield {
+            "quantity": quantity,
+            "methods": len(methods),
+            "printed": outside.sum(),
+            "in_range": chance >= 2 * tail,
+            "chance": chance,
+            "outside": ", ".join(methods[outside]),
+        }
         farthest = squares[0].argmax()
         means, methods = (np.delete(each, farthest, axis=-1) for each in (means, methods))
 
@@ -133,9 +152,15 @@ def _placed(quantity: str, values: np.ndarray, tail: float) -> dict:
     printed, others = values[0], values[1:][~np.isnan(values[1:])]
     low, median, high = np.quantile(others, [tail, 0.5, 1 - tail])
     beyond = min(_share(others <= printed + _EXACT), _share(others >= printed - _EXACT))
-    row = {"quantity": quantity, "printed": printed, "ours": median}
-    row |= {"low95_predicted": low, "high95_predicted": high}
-    return row | {"in_range": beyond >= tail, "chance": min(2 * beyond, 1.0)}
+    return {
+        "quantity": quantity,
+        "printed": printed,
+        "ours": median,
+        "low95_predicted": low,
+        "high95_predicted": high,
+        "in_range": beyond >= tail,
+        "chance": min(2 * beyond, 1.0),
+    }
 
 
 def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:

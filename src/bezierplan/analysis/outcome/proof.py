@@ -16,15 +16,31 @@ LIST = "verified.json"
 """The file that lists the digests of all others."""
 
 _FOLLOW = (
-    *("*/problems/*.parquet", "*/paper/*", "*/beyond/*", "*/*.csv", "*/verdict.md"),
-    *("*.csv", "index.html"),
+    "*/problems/*.parquet",
+    "*/paper/*",
+    "*/beyond/*",
+    "*/*.csv",
+    "*/verdict.md",
+    "*.csv",
+    "index.html",
 )
 """Files that follow from the studies and from runs."""
 _ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}
 """Those by which Snakemake is asked for all of them."""
 _RULES = (
-    *("problems", "bounds", "table", "unprinted_table", "listing", "latex", "figure", "claims"),
-    *("audit", "baseline_comparison", "summary", "verdict", "page"),
+    "problems",
+    "bounds",
+    "table",
+    "unprinted_table",
+    "listing",
+    "latex",
+    "figure",
+    "claims",
+    "audit",
+    "baseline_comparison",
+    "summary",
+    "verdict",
+    "page",
 )
 
 

@@ -19,11 +19,14 @@ def gathered(
     claims_files: list[str],
 ) -> dict[str, pd.DataFrame]:
     """All studies together by name: `numbers`, `claims`, and `wholes`, columns of numbers.
-    comparison_files: by study and table. wholes_files: of the same tables.
+    comparison_files: by study and table. wholes_files: of the same tables. claims_files: of the
+    studies that have any.
     """
+    claims = [pd.read_csv(file) for file in claims_files]
+    none = pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
     return {
         "numbers": numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
-        "claims": read_claims(claims_files),
+        "claims": pd.concat(claims, ignore_index=True) if claims else none,
         "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
     }
 
@@ -56,16 +59,6 @@ def verdicts(
         study: verdict.markdown(verdict.read(file), verdict.own_rows(tables, study), labels)
         for study, (file, labels) in files.items()
     }
-
-
-def read_claims(files: list[str]) -> pd.DataFrame:
-    """The claims of all studies, from the files of those that have any."""
-    tables = [pd.read_csv(file) for file in files]
-    return (
-        pd.concat(tables, ignore_index=True)
-        if tables
-        else pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
-    )
 
 
 def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:

@@ -30,7 +30,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.readings import fit
 from bezierplan.analysis.readings.assumptions import Alternatives, Reading, ReadingRuns
-from bezierplan.analysis.results import Results, joined, published_table, select
+from bezierplan.analysis.results import Results, joined, keys_of, select
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, problems
@@ -39,7 +39,6 @@ from bezierplan.running.guard.interface import check_settings
 from bezierplan.running.inputs import Files
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
@@ -85,11 +84,11 @@ def quantities(
     """
     all_quantities = []
     for name, spec in tables.items():
-        printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
-        keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
+        printed = comparison.read_published(files[Path(spec.published).stem], spec)
+        keys = keys_of(printed)
         printed = printed.replace({"statistic": {"unstated": "median"}})
         for entry in spec.values:
-            for named in one_or_list(entry.statistic):
+            for named in entry.statistics:
                 statistic = named.replace("unstated", "median")
                 rows = select(printed, {"metric": entry.metric, "statistic": statistic})
                 if statistic not in VOTING or rows.empty:
@@ -180,7 +179,9 @@ def excluded(quantities: list[Quantity], results: dict[str, Results], proposed: 
             below |= bool((printed["value"] + 0.5 * 10.0**-quantity.decimals < least).any())
         if "method" in printed and metrics.METRICS[quantity.metric].feasible_only:
             own = quantity._replace(printed=printed[printed["method"] == proposed])
-            lost |= bool((by_unit(own, _with_lost(outcome), "lost").mean(axis=1) >= LOST).any())
+            runs = outcome.runs.assign(lost=outcome.runs["length"].isna())
+            shares = by_unit(own, outcome._replace(runs=runs), "lost").mean(axis=1)
+            lost |= bool((shares >= LOST).any())
     reasons = {
         "a printed mean lies below the exact optimum": below,
         "the proposed method returns no path": lost,
@@ -201,10 +202,6 @@ def lowest_order(quantities: list[Quantity], results: dict[str, Results]) -> flo
         if each.statistic == "mean" and each.printed["votes"].sum() >= LEAST_ORDERED
     ]
     return min(orders, default=math.nan)
-
-
-def _with_lost(results: Results) -> Results:
-    return results._replace(runs=results.runs.assign(lost=results.runs["length"].isna()))
 
 
 # --------------------------------------------------------------------------------------------------
@@ -229,8 +226,11 @@ def under(chunk: Chunk, reading: Reading, assumptions: list[Alternatives]) -> Ch
 
 def _without_reference(chunk: Chunk) -> Chunk:
     """A chunk on other maps, whose best path is not known."""
-    known = {name for name, place in chunk.problems.items() if "reference" in place}
-    places = {name: chunk.problems[name] | {"reference": math.nan} for name in known}
+    places = {
+        name: place | {"reference": math.nan}
+        for name, place in chunk.problems.items()
+        if "reference" in place
+    }
     return chunk._replace(problems=chunk.problems | places)
 
 
@@ -367,7 +367,8 @@ def of_study(
         tried.append((reading, chunks, why, runs))
     rows, verdicts, numbers, fits, done = [], [], [], False, 0
     on_open_maps = {name for reading, *_ in tried for name in runner.moved(reading)}
-    among, every = (sum(values) for values in zip(*((not why, runs) for *_, why, runs in tried)))
+    among = sum(not why for *_, why, _ in tried)
+    every = sum(runs for *_, runs in tried)
     for number, (reading, chunks, why, runs) in enumerate(tried, 1):
         name, p, order = name_of(reading), math.nan, math.nan
         if chunks:

@@ -137,12 +137,6 @@ def printed_over_bound(
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
 
 
-def _sides(published: "Published") -> dict[str, int]:
-    """The side of the fields of a table of lengths, in cells."""
-    printed = said(published)
-    return {table: int(printed[f"side in {table}"]) for table in ("table2", "table3")}
-
-
 def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
     """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a
     share of the side.
@@ -159,7 +153,11 @@ def printed_lengths(published: "Published") -> pd.DataFrame:
     """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
     in cells.
     """
-    tables = [published[table].assign(side=side) for table, side in _sides(published).items()]
+    printed = said(published)
+    tables = [
+        published[table].assign(side=int(printed[f"side in {table}"]))
+        for table in ("table2", "table3")
+    ]
     rows = pd.concat(tables, ignore_index=True)
     return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
 

@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import free_cells, headings, held_history, samples_of
-from bezierplan.analysis.metric import (
-    Metric,
-    metric,
-    of_path,
-    on_maps,
-    register,
-)
+from bezierplan.analysis.metric import Metric, metric, of_path, on_maps, register
 
 if TYPE_CHECKING:
     import pandas as pd

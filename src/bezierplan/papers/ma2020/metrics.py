@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bezierplan.analysis.measures import CORNER, headings, path_headings
-from bezierplan.analysis.metric import (
-    metric,
-    of_path,
-    of_paths,
-    on_map,
-)
+from bezierplan.analysis.metric import metric, of_path, of_paths, on_map
 from bezierplan.workspaces.grid import Grid
 
 if TYPE_CHECKING:
@@ -70,26 +65,16 @@ def _spare(turns: np.ndarray, grid: Grid) -> np.ndarray:
     import shapely
 
     legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
-    return ~shapely.intersects(_inside(*_hashable(grid)), legs)
-
-
-def _hashable(grid: Grid) -> tuple[bytes, int, float, tuple[float, float]]:
-    """What a grid is made from (`_grid`)."""
-    return grid.occupied.tobytes(), grid.occupied.shape[1], grid.cell, grid.origin
-
-
-def _grid(occupied: bytes, columns: int, cell: float, origin: tuple[float, float]) -> Grid:
-    return Grid(np.frombuffer(occupied, dtype=bool).reshape(-1, columns), cell, "", origin)
+    return ~shapely.intersects(_inside(grid), legs)
 
 
 @lru_cache(maxsize=8)
-def _inside(*made_from: Any) -> Geometry:
+def _inside(grid: Grid) -> Geometry:
     """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller,
     since a path may touch them.
     """
     import shapely
 
-    grid = _grid(*made_from)
     rows, columns = np.nonzero(grid.occupied)
     x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
     whole = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
@@ -108,13 +93,11 @@ def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list
     """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
     none.
     """
-    names = runs["problem"].unique()
-    measures = {name: _clearance_in(*_hashable(problems[name].workspace)) for name in names}
-    return of_paths(runs["problem"].map(measures), runs)
+    return of_paths([_clearance_in(problems[name].workspace) for name in runs["problem"]], runs)
 
 
 @cache
-def _clearance_in(*made_from: Any) -> Callable[[Path], float]:
+def _clearance_in(grid: Grid) -> Callable[[Path], float]:
     """The smallest distance of a free path to the occupied cells of a grid, as a measure of the
     path.
 
@@ -124,7 +107,6 @@ def _clearance_in(*made_from: Any) -> Callable[[Path], float]:
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
 
-    grid = _grid(*made_from)
     margin = sum(grid.occupied.shape)
     wide = region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
 

@@ -78,23 +78,26 @@ def _fisher_rows(
     """Whether the proposed mutation's count differs from each other one by more than chance."""
     from scipy import stats
 
-    pairs = list(itertools.product(tables, others))
-    counts = [
-        [tables[name][method, metric] for method in ("proposed", other)] for name, other in pairs
-    ]
-    squares = [
-        [[count, trials[name] - count] for count in both]
-        for (name, _), both in zip(pairs, counts, strict=True)
-    ]
-    p = holm(np.array([stats.fisher_exact(square).pvalue for square in squares]))
+    pairs, apart, p = list(itertools.product(tables, others)), [], []
+    for name, other in pairs:
+        own, theirs = (tables[name][method, metric] for method in ("proposed", other))
+        square = [[count, trials[name] - count] for count in (own, theirs)]
+        apart.append(own - theirs)
+        p.append(stats.fisher_exact(square).pvalue)
+    rule = (
+        f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected by "
+        "Holm"
+    )
     return [
         checked(
-            *(name, f"metric={metric}, proposed and {other}"),
-            f"the proposed mutation has the {words} beyond chance: "
-            "p of Fisher's test, corrected by Holm",
-            *(value, ALPHA, bool(value < ALPHA and sign * (own - theirs) > 0)),
+            name,
+            f"metric={metric}, proposed and {other}",
+            rule,
+            value,
+            ALPHA,
+            bool(value < ALPHA and sign * more > 0),
         )
-        for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
+        for (name, other), more, value in zip(pairs, apart, holm(np.array(p)).tolist())
     ]
 
 

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from bezierplan.analysis.measures import held_history
-from bezierplan.analysis.metric import (
-    Metric,
-    count,
-    register,
-)
+from bezierplan.analysis.metric import Metric, count, register
 
 register(
     {

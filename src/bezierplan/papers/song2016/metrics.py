@@ -14,14 +14,7 @@ from bezierplan.analysis.measures import (
     free_cells,
     held_history,
 )
-from bezierplan.analysis.metric import (
-    generation,
-    metric,
-    of_path,
-    on_map,
-    on_maps,
-    register,
-)
+from bezierplan.analysis.metric import generation, metric, of_path, on_map, on_maps, register
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 
 if TYPE_CHECKING:

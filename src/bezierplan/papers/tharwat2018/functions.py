@@ -47,11 +47,7 @@ CONVERGED = 0.01
 CHAOTIC = chaotic_maps.MAPS[:8]
 
 
-def chaotic_sequences(
-    *,
-    iterations: int,
-    singer_mu: float,
-) -> pd.DataFrame:
+def chaotic_sequences(*, iterations: int, singer_mu: float) -> pd.DataFrame:
     """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1),
     value. Each map has one random start.
 
@@ -141,21 +137,21 @@ def bowl_with_local_minima(
     from scipy import stats
 
     found = results[check.experiment]
-    surface = _landscape(found._replace(runs=select(found.runs, check.where)))
-    best = surface.loc[surface["fitness"].idxmin()]
+    surface = landscape(found._replace(runs=select(found.runs, check.where)))
+    best = surface.loc[surface["objective"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
-    correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
-    minima = int(valleys(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
+    correlation = float(stats.spearmanr(surface["objective"], distance).statistic)
+    minima = int(valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).sum())
     return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
 
 
 def fitness_landscape(results: Results) -> pd.DataFrame:
-    """Figures 10 to 12: `landscape` of the problem of runs, with the settings of the run.
+    """Figures 10 to 12: `landscape` of runs, with its minima.
 
     Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
     fixed (control points that do not move).
     """
-    surface = _landscape(results).rename(columns={"fitness": "objective"})
+    surface = landscape(results)
     minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
     stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
     parts = {
@@ -167,31 +163,27 @@ def fitness_landscape(results: Results) -> pd.DataFrame:
     return pd.concat([frame.assign(part=part) for part, frame in parts.items()], ignore_index=True)
 
 
-def _landscape(results: Results) -> pd.DataFrame:
-    """`landscape` with the settings of the first run of the swarms."""
-    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
-    return landscape(
-        results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"])
-    )
+def landscape(results: Results) -> pd.DataFrame:
+    """Figures 10 and 11: objective of a Bézier curve with one control point moving over the field,
+    the others as in `BEST_KNOWN`; problem and settings are those of the first run of the swarms.
 
-
-def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
-    """Figures 10 and 11: fitness of a Bézier curve with one control point moving over the field,
-    the others as in `BEST_KNOWN`.
-
-    One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units.
-    samples, beta: settings of the planner.
+    One row per node of a square grid, y changing fastest; columns: x, y and objective, in units.
     """
+    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
+    problem, known = results.problems[run["problem"]], BEST_KNOWN[run["workspace"]]
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     x, y = np.meshgrid(
         np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij"
     )
-    paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
-    paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
+    paths = np.empty((GRID * GRID, len(known) + 2, 2))
+    paths[:] = [problem.start, *known, problem.target]
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
     # In parts, to save memory.
-    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]
-    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
+    values = [
+        fitness(part, problem, int(run["samples"]), float(run["beta"]))
+        for part in np.array_split(paths, GRID)
+    ]
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": np.concatenate(values)})
 
 
 def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:

@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import samples_of
-from bezierplan.analysis.metric import (
-    Metric,
-    count,
-    metric,
-    on_map,
-    on_maps,
-    register,
-)
+from bezierplan.analysis.metric import Metric, count, metric, on_map, on_maps, register
 from bezierplan.workspaces.circles import Circles
 
 if TYPE_CHECKING:
