@@ -58,7 +58,7 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
-        "Of 3 printed numbers 2 can be tested; of these reproduce 1.",
+        "Of 3 printed numbers 2 can be tested; of these we reproduce 1.",
         "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 cannot be decided.",
         "The exact shortest path with rounded corners is always free: of the 1 method that are "
         "free as often, none gives a shorter path, and none a smoother one.",
@@ -124,7 +124,7 @@ def test_markdown_leaves_out_what_no_study_has():
         )
     )
     assert text.startswith(
-        "**Of 1 printed number 1 can be tested; of these reproduce 1. Of 1 claim"
+        "**Of 1 printed number 1 can be tested; of these we reproduce 1. Of 1 claim"
     )
     assert "| reproduced | 1 | 1 | 1 of 1 | 1 | 0 | 0 | 0 |" in text
     assert headline.BESIDE not in text

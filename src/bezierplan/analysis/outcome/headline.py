@@ -16,7 +16,7 @@ from bezierplan.analysis.numbers import baseline_comparison, comparison
 PAPERS = {
     "word": "outcome",
     "tested": "numbers that can be tested",
-    "agree": "of these reproduce",
+    "agree": "of these we reproduce",
     "close": "ours within 10 %",
     "hold": "claims that hold",
     "partly": "hold in part",
@@ -185,7 +185,7 @@ def _of_numbers(counts: pd.Series) -> str:
     total, agree = int(counts.sum()), int(counts["agree"])
     return (
         f"Of {baseline_comparison.counted(total, 'printed number')} {agree + counts['disagree']} "
-        f"can be tested; of these reproduce {agree}."
+        f"can be tested; of these we reproduce {agree}."
         if total
         else ""
     )
