@@ -29,13 +29,12 @@ def draw(
     """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if
     any.
     """
-    workspace.shade(axes, workspace.parts(problem.workspace))
-    workspace.scale(axes, problem.workspace.unit)
+    workspace.draw_home(axes, problem.workspace)
     parts = {"path": paths.steps(path)} if path else {}
     parts |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
     if collision:
         parts["collision"] = [collision]
-    paths.draw_parts(axes, paths.table(parts), clip=True)
+    style.draw_parts(axes, workspace.places(parts), paths.LOOK)
 
 
 def html(draw: Callable[[Axes], object], lines: dict[str, str]) -> str:

@@ -13,6 +13,7 @@ from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
     from bezierplan.analysis.results import Results
 
@@ -125,6 +126,14 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     unit = unit_of(column, scene)
     beside = "" if unit in ("-", "s", "") else f" ({unit})"
     return f"{statistic} {naming.column_name(column, scene.labels)}{beside}".lstrip()
+
+
+def show_metric(
+    axes: Axes, metric: str, scene: Any, statistic: str = "", scale: str = "linear"
+) -> None:
+    """Name the axis of y after what it shows, and scale it (`style.measure`)."""
+    axes.set_ylabel(axis_label(metric, scene, statistic))
+    style.measure(axes.yaxis, scale, unit_of(metric, scene))
 
 
 def unit_of(column: str, scene: Any) -> str:

@@ -152,5 +152,5 @@ class Page(Job):
             for key, own in self.page.studies.items()
         }
         job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
-        summary, verified = list(input_files.summary), input_files.verified
-        build.write(job, folder, summary, verified, output_files.page)
+        page = build.page(job, folder, list(input_files.summary), input_files.verified)
+        Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")

@@ -1,7 +1,7 @@
 """Tables as LaTeX, ready to be read by a paper that loads `booktabs` and `graphicx`."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pandas as pd
@@ -14,9 +14,11 @@ _SIGNS = {
     "^": r"\textasciicircum{}",
     "<": r"\textless{}",
     ">": r"\textgreater{}",
+    "²": r"\textsuperscript{2}",
+    "→": r"$\to$",
+    "ζ": r"$\zeta$",
 }
 _SIGNS |= {sign: f"\\{sign}" for sign in "&%$#_{}"}
-_SIGNS |= {"²": r"\textsuperscript{2}", "→": r"$\to$", "ζ": r"$\zeta$"}
 
 # Columns that fit a page; more are scaled down to its width.
 _MOST_COLUMNS = 7
@@ -93,12 +95,12 @@ def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str]
 
 def escaped(text: str) -> str:
     """Text in which no sign is a command."""
-    return "".join(_SIGNS.get(sign, sign) for sign in text)
+    return text.translate(str.maketrans(_SIGNS))
 
 
-def _row(cells: tuple) -> str:
+def _row(cells: Iterable[str]) -> str:
     """Cells of a row; one of two lines is a stack."""
-    texts = [escaped(str(cell)) for cell in cells]
+    texts = map(escaped, cells)
     stacks = [
         "\\shortstack[r]{" + text.replace("\n", " \\\\ ") + "}" if "\n" in text else text
         for text in texts
@@ -111,23 +113,18 @@ def _heads(names: list[str]) -> list[str]:
     names.
     """
     parts = [name.split(_LEVEL, 1) for name in names]
-    groups = [
-        (first, len(list(group))) for first, group in itertools.groupby(part[0] for part in parts)
-    ]
-    if all(count == 1 for _, count in groups):
-        return [_row(tuple(names))]
-    above, rules, below, column = [], [], [], 1
-    for first, count in groups:
-        group = [
-            part[-1] if count > 1 or len(part) > 1 else part[0]
-            for part in parts[column - 1 : column - 1 + count]
-        ]
-        below += group
-        shared = count > 1 or group != [first]
-        above.append(f"\\multicolumn{{{count}}}{{c}}{{{escaped(first)}}}" if shared else "")
-        rules += [f"\\cmidrule(lr){{{column}-{column + count - 1}}}"] if shared else []
-        column += count
-    return [" & ".join(above) + " \\\\", "".join(rules), _row(tuple(below))]
+    if all(part[0] != after[0] for part, after in itertools.pairwise(parts)):
+        return [_row(names)]
+    above, rules, below = [], "", []
+    for first, group in itertools.groupby(parts, key=lambda part: part[0]):
+        own = [part[-1] for part in group]
+        if own == [first]:
+            above.append("")
+        else:
+            above.append(f"\\multicolumn{{{len(own)}}}{{c}}{{{escaped(first)}}}")
+            rules += f"\\cmidrule(lr){{{len(below) + 1}-{len(below) + len(own)}}}"
+        below += own
+    return [" & ".join(above) + " \\\\", rules, _row(below)]
 
 
 def _is_number(column: pd.Series) -> bool:

@@ -170,7 +170,8 @@ def _name_axes_once(panels: list[Axes], columns: int) -> None:
     """
     if len({axes.get_ylabel() for axes in panels}) == 1:
         for number, axes in enumerate(panels):
-            axes.set_ylabel(axes.get_ylabel() if number % columns == 0 else "")
+            if number % columns:
+                axes.set_ylabel("")
     if len({axes.get_xlabel() for axes in panels}) == 1:
         for axes in panels[: max(0, len(panels) - columns)]:
             axes.set_xlabel("")

@@ -20,11 +20,16 @@ from functools import cache
 
 import numpy as np
 
+from bezierplan.workspaces import polygons
 from bezierplan.workspaces.problem import Path
 
 _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezier": None}
 B_SPLINES = tuple(_DEGREE)
 CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
+
+# Curves whose control points are those of their pieces, which have this degree; ways that were
+# driven have hundreds.
+_CHAINS = {"polyline": 1, "cubic_chain": 3}
 
 # Below this share of the curve's highest speed a point counts as standing still, as happens with
 # repeated control points; curvature is undefined there.
@@ -74,10 +79,11 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
         raise ValueError(
             f"a curve of kind {curve} needs at least {least} control points{more}, not {points}"
         )
+    own = np.eye(points)
     if curve == "ferguson":
-        matrix = _ferguson_pieces(points)
-    elif curve == "cubic_chain":
-        matrix = np.eye(points)[_chained(points)]
+        matrix = _hermite_pieces(own[::2], own[1::2])
+    elif curve in _CHAINS:
+        matrix = own[_chained(points, _CHAINS[curve])]
     elif curve == "spline":
         matrix = _spline_pieces(points)
     else:
@@ -88,8 +94,6 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 
 def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     pieces = points - degree
-    if degree == 1:  # chords; ways that were driven have hundreds
-        return np.eye(points)[_legs(points)]
     knots = np.concatenate(
         [np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))]
     )
@@ -112,19 +116,9 @@ def _spline_pieces(points: int) -> np.ndarray:
     return _hermite_pieces(np.eye(points), slopes)
 
 
-def _chained(points: int) -> np.ndarray:
-    """Indices of the control points of each piece of a `cubic_chain`: (pieces, 4)."""
-    return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
-
-
-def _legs(points: int) -> np.ndarray:
-    """Indices of both ends of each leg of a polyline: (legs, 2)."""
-    return np.arange(points - 1)[:, None] + np.arange(2)
-
-
-def _ferguson_pieces(points: int) -> np.ndarray:
-    rows = np.eye(points)
-    return _hermite_pieces(rows[::2], rows[1::2])
+def _chained(points: int, degree: int) -> np.ndarray:
+    """Indices of the control points of each piece of a chain: (pieces, degree + 1)."""
+    return np.arange(0, points - 1, degree)[:, None] + np.arange(degree + 1)
 
 
 def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
@@ -149,10 +143,8 @@ def bezier_pieces(path: Path) -> np.ndarray:
     """
     points = np.asarray(path.points, dtype=float)
     # Indices avoid a matrix that grows with the square of the number of pieces.
-    if path.curve == "cubic_chain":
-        return points[_chained(len(points))]
-    if path.curve == "polyline" and len(points) > 1:
-        return points[_legs(len(points))]
+    if path.curve in _CHAINS and len(points) > 1:
+        return points[_chained(len(points), _CHAINS[path.curve])]
     return piece_matrix(path.curve, len(points)) @ points
 
 
@@ -243,7 +235,7 @@ def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
     speed = np.hypot(first[:, 0], first[:, 1])
     moving = speed > STANDSTILL * speed.max()
     kappa = np.full(len(t), np.nan)
-    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    cross = polygons.cross(first, second)
     kappa[moving] = cross[moving] / speed[moving] ** 3
     return kappa, speed
 
@@ -264,7 +256,7 @@ def curvature_jump(path: Path) -> float:
     moving = (start_speed[1:] > STANDSTILL * fastest) & (end_speed[:-1] > STANDSTILL * fastest)
     leaving = pieces[1:, 1] - pieces[1:, 0]
     arriving = pieces[:-1, -1] - pieces[:-1, -2]
-    cross = leaving[:, 0] * arriving[:, 1] - leaving[:, 1] * arriving[:, 0]
+    cross = polygons.cross(leaving, arriving)
     along = (leaving * arriving).sum(axis=1)
     turns = moving & ((along <= 0) | (np.abs(cross) > 1e-9 * np.abs(along)))
     if turns.any():

@@ -13,6 +13,7 @@ import numpy as np
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
 from bezierplan.workspaces.problem import Workspace
 
@@ -192,18 +193,11 @@ def _element(coordinate: float, tolerance: float) -> int:
     )
 
 
-def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
+def border_edges(bounds: Bounds) -> np.ndarray:
     """The four edges (4, 4) of a border, as x, y, x, y."""
     left, right, bottom, top = bounds
-    return np.array(
-        [
-            [left, bottom, right, bottom],
-            [right, bottom, right, top],
-            [right, top, left, top],
-            [left, top, left, bottom],
-        ],
-        float,
-    )
+    corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])
 
 
 def walled(occupied: np.ndarray) -> np.ndarray:
@@ -242,17 +236,11 @@ def _grid_region(grid: Grid) -> GridRegion:
         float(grid.cell),
         np.array(grid.origin, dtype=float),
         blocked,
-        _prefix_sums(blocked),
+        # Sums of what lies below and to the left of each corner.
+        np.pad(blocked.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0))),
         edges,
         bins_of(edges),
     )
-
-
-def _prefix_sums(elements: np.ndarray) -> np.ndarray:
-    """The number of true elements below and to the left of each corner of a bool array (rows,
-    columns): (rows + 1, columns + 1).
-    """
-    return np.pad(elements.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0)))
 
 
 def runs_of(boundary: np.ndarray) -> np.ndarray:

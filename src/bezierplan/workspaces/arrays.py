@@ -23,3 +23,9 @@ def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
         return values
     found = np.ascontiguousarray(values, dtype)
     return np.ndarray(np.shape(values), found.dtype, found.tobytes())
+
+
+def freeze(of: object, *names: str) -> None:
+    """Make fields of a frozen dataclass read-only arrays of floats."""
+    for name in names:
+        object.__setattr__(of, name, read_only(getattr(of, name), float))

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezierplan.workspaces.arrays import read_only
+from bezierplan.workspaces.arrays import freeze
 from bezierplan.workspaces.grown import Growth
+from bezierplan.workspaces.limits import Bounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,12 +18,11 @@ class Circles:
     read-only.
     """
 
-    bounds: tuple[float, float, float, float]
+    bounds: Bounds
     centres: np.ndarray
     radii: np.ndarray
     unit: str
     growth: Growth | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "centres", read_only(self.centres, float))
-        object.__setattr__(self, "radii", read_only(self.radii, float))
+        freeze(self, "centres", "radii")

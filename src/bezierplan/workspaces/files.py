@@ -46,91 +46,62 @@ def to_json(workspace: Workspace) -> str:
     """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
     circles, whatever the number of its cells.
     """
-    if isinstance(workspace, Grid) and isinstance(workspace.shapes, Circles):
-        content = _circles_content(workspace.shapes) | {"kind": "random_field"}
-    elif isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
-        cells = {
-            "cell": workspace.cell,
-            "rows": grid.to_lines(workspace),
-            "origin": workspace.origin,
-        }
-        content = _polygons_content(workspace.shapes) | cells | {"kind": "raster"}
-    elif isinstance(workspace, Grid):
-        content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
-        if workspace.origin != (0.0, 0.0):
-            content["origin"] = workspace.origin
+    return json.dumps(_content(workspace) | {"unit": workspace.unit})
+
+
+def _content(workspace: Workspace) -> dict:
+    if isinstance(workspace, Circles):
+        table = np.column_stack([workspace.centres, workspace.radii]).tolist()
+        content = {"kind": "circles", "bounds": workspace.bounds, "circles": table}
+    elif isinstance(workspace, Polygons):
+        obstacles = [[ring.tolist() for ring in rings] for rings in workspace.obstacles]
+        content = {"kind": "polygons", "bounds": workspace.bounds, "obstacles": obstacles}
+    elif isinstance(workspace.shapes, Circles):
+        return _content(workspace.shapes) | {"kind": "random_field"}
+    else:
+        cells = {"cell": workspace.cell, "rows": grid.to_lines(workspace)}
+        if workspace.shapes or workspace.origin != (0.0, 0.0):
+            cells["origin"] = workspace.origin
+        if workspace.shapes:
+            return _content(workspace.shapes) | cells | {"kind": "raster"}
+        content = {"kind": "grid"} | cells
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
-        content |= _growth_content(workspace.growth)
-    elif isinstance(workspace, Circles):
-        content = _circles_content(workspace)
-    else:
-        content = _polygons_content(workspace)
-    return json.dumps(content | {"unit": workspace.unit})
-
-
-def _polygons_content(polygons: Polygons) -> dict:
-    obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
-    return {
-        "kind": "polygons",
-        "bounds": polygons.bounds,
-        "obstacles": obstacles,
-    } | _growth_content(polygons.growth)
-
-
-def _circles_content(circles: Circles) -> dict:
-    table = np.column_stack([circles.centres, circles.radii]).tolist()
-    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _growth_content(
-        circles.growth
-    )
-
-
-def _growth_content(growth: Growth | None) -> dict:
-    if growth is None:
-        return {}
-    return {
-        "grown": {
+    if growth := workspace.growth:
+        content["grown"] = {
             "radius": growth.radius,
             "original": to_json(growth.original),
             "centres": growth.centres.tolist(),
         }
-    }
+    return content
 
 
 def _growth(content: dict) -> Growth | None:
     if "grown" not in content:
         return None
     known = content["grown"]
-    return Growth(
-        known["radius"],
-        from_json(known["original"]),
-        read_only(np.array(known["centres"], dtype=float).reshape(-1, 2), float),
-    )
+    centres = read_only(np.reshape(known["centres"], (-1, 2)), float)
+    return Growth(known["radius"], from_json(known["original"]), centres)
 
 
 def from_json(text: str) -> Workspace:
     """The workspace that `to_json` wrote."""
     content = json.loads(text)
-    unit = content["unit"]
-    if content["kind"] == "grid":
-        flat = replace(
-            grid.from_lines(content["rows"], content["cell"], unit),
-            origin=tuple(content.get("origin", (0.0, 0.0))),
-            growth=_growth(content),
-        )
-        return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
-    bounds = tuple(content["bounds"])
-    if content["kind"] in ("polygons", "raster"):
-        obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-        polygons = Polygons(bounds, obstacles, unit, _growth(content))
-        if content["kind"] == "polygons":
-            return polygons
-        cells = grid.from_lines(content["rows"], content["cell"], unit)
-        return replace(
-            cells,
-            origin=tuple(content["origin"]),
-            shapes=polygons,
-        )
-    table = np.array(content["circles"], dtype=float).reshape(-1, 3)
-    circles = Circles(bounds, table[:, :2], table[:, 2], unit, _growth(content))
-    return random_field.from_circles(circles) if content["kind"] == "random_field" else circles
+    kind, unit, growth = content["kind"], content["unit"], _growth(content)
+    if "circles" in content:
+        table = np.reshape(content["circles"], (-1, 3))
+        circles = Circles(tuple(content["bounds"]), table[:, :2], table[:, 2], unit, growth)
+        return random_field.from_circles(circles) if kind == "random_field" else circles
+    shapes = None
+    if "obstacles" in content:
+        shapes = Polygons(tuple(content["bounds"]), content["obstacles"], unit, growth)
+        if kind == "polygons":
+            return shapes
+    cells = grid.from_lines(content["rows"], content["cell"], unit)
+    return replace(
+        cells,
+        origin=tuple(content.get("origin", cells.origin)),
+        shapes=shapes,
+        heights=content.get("heights"),
+        growth=None if shapes else growth,
+    )

@@ -20,12 +20,13 @@ from bezierplan.schema.checked import closest
 from bezierplan.workspaces.limits import (
     SMALLEST_ANGLE,
     SMALLEST_GAP,
+    Bounds,
     check_bounds,
     check_gaps,
     check_numbers,
     check_thickness,
 )
-from bezierplan.workspaces.polygons import Polygons, cross, parts
+from bezierplan.workspaces.polygons import Polygons, cross, parts, rings_of
 
 if TYPE_CHECKING:
     import shapely
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 ROLES = ("border", "obstacle", "start", "target")
-
-Bounds = tuple[float, float, float, float]
 
 
 class Shape(NamedTuple):
@@ -76,7 +75,7 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
         else:
             logger.warning("%s: beyond the border, and cut there", shape.name)
             kept += parts(shape.polygon.intersection(frame))
-    return Polygons(limits, tuple(map(_rings, kept)), unit)
+    return Polygons(limits, tuple(map(rings_of, kept)), unit)
 
 
 def _content(text: str) -> dict[str, Any]:
@@ -147,7 +146,7 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
                 f"{name}: {shapely.is_valid_reason(polygon)}; expected a simple polygon"
             )
         check_thickness(shapely.minimum_clearance(polygon), f"{name}: thickness")
-        for ring in _rings(shapely.remove_repeated_points(polygon)):
+        for ring in rings_of(shapely.remove_repeated_points(polygon)):
             ahead, back = np.roll(ring, -1, axis=0) - ring, np.roll(ring, 1, axis=0) - ring
             angles = np.abs(np.arctan2(cross(ahead, back), (ahead * back).sum(axis=1)))
             if angles.min() < SMALLEST_ANGLE:
@@ -197,18 +196,12 @@ def _border(
     limits = float(low[0]), float(high[0]), float(low[1]), float(high[1])
     check_numbers(np.array(limits), "the border")
     check_bounds(limits)
-    beyond = [shapely.box(*low, *high).difference(shape.polygon) for shape in borders]
     return limits, [
-        Shape(f"{borders[0].name}: outside of it", "obstacle", part)
-        for shape in beyond
-        for part in parts(shape)
+        Shape(f"{border.name}: outside of it", "obstacle", part)
+        for border in borders
+        for part in parts(shapely.box(*low, *high).difference(border.polygon))
         if not part.is_empty
     ]
-
-
-def _rings(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
-    """The rings of a polygon, each without its last position."""
-    return tuple(np.array(ring.coords)[:-1] for ring in (polygon.exterior, *polygon.interiors))
 
 
 def _check_gaps(obstacles: list[Shape], frame: "shapely.Polygon") -> None:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezierplan.workspaces.arrays import read_only
+from bezierplan.workspaces.arrays import freeze, read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grown import Growth
-from bezierplan.workspaces.limits import check_cells, check_numbers
+from bezierplan.workspaces.limits import Bounds, check_cells, check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
 # A coordinate this close below a grid line, in cells, counts as on it. Control points at cell
@@ -45,10 +45,10 @@ class Grid:
     def __post_init__(self) -> None:
         object.__setattr__(self, "occupied", read_only(self.occupied, bool))
         if self.heights is not None:
-            object.__setattr__(self, "heights", read_only(self.heights, float))
+            freeze(self, "heights")
 
     @property
-    def bounds(self) -> tuple[float, float, float, float]:
+    def bounds(self) -> Bounds:
         """Lowest and highest x, lowest and highest y, in units."""
         rows, columns = self.occupied.shape
         x, y = self.origin
@@ -98,10 +98,8 @@ def embed(occupied: np.ndarray) -> np.ndarray:
 
     occupied: bool (rows, columns) -> bool (2**i, 2**j). Every binary cell number is then a cell.
     """
-    rows, columns = (1 << (count - 1).bit_length() for count in occupied.shape)
-    embedded = np.ones((rows, columns), dtype=bool)
-    embedded[: occupied.shape[0], : occupied.shape[1]] = occupied
-    return embedded
+    surplus = [(0, (1 << (count - 1).bit_length()) - count) for count in occupied.shape]
+    return np.pad(occupied, surplus, constant_values=True)
 
 
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:

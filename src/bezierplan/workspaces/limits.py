@@ -1,6 +1,11 @@
 """Limits on the coordinates of a workspace, whatever kind of file they come from."""
 
+from collections.abc import Iterable
+
 import numpy as np
+
+Bounds = tuple[float, float, float, float]
+"""Lowest and highest x, lowest and highest y, in units."""
 
 LARGEST = 1e5
 """Largest size of a coordinate, in units: beyond it the checker could not keep its tolerance."""
@@ -42,7 +47,15 @@ def check_cells(rows: int, columns: int) -> None:
         raise ValueError(f"{rows:,} x {columns:,} cells; expected at most {MOST_CELLS:,}")
 
 
-def check_bounds(bounds: tuple[float, float, float, float]) -> None:
+def bounds_of(entries: Iterable[float]) -> Bounds:
+    """The bounds that a description gives. Raises ValueError as `check_bounds`."""
+    x_low, x_high, y_low, y_high = map(float, entries)
+    bounds = x_low, x_high, y_low, y_high
+    check_bounds(bounds)
+    return bounds
+
+
+def check_bounds(bounds: Bounds) -> None:
     """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below
     high by `SMALLEST_FEATURE`.
     """

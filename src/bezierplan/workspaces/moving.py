@@ -6,24 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.workspaces.limits import check_bounds, check_thickness
+from bezierplan.workspaces.limits import Bounds, check_thickness
 from bezierplan.workspaces.random_field import random_centres
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
 
-Walls = tuple[float, float, float, float]
-
-
-def walls_of(bounds: list[float]) -> Walls:
-    """The walls of a field, from a description's bounds. Raises ValueError if they have no room."""
-    x_low, x_high, y_low, y_high = map(float, bounds)
-    check_bounds((x_low, x_high, y_low, y_high))
-    return x_low, x_high, y_low, y_high
-
 
 def circles(
-    description: dict, walls: Walls, centres: np.ndarray, velocities: np.ndarray, radii: np.ndarray
+    description: dict, walls: Bounds, centres: np.ndarray, velocities: np.ndarray, radii: np.ndarray
 ) -> MovingCircles:
     """Circles that move within walls: centres and velocities (n, 2), radii (n,). Raises ValueError
     for a radius that is too small.
@@ -42,7 +33,7 @@ def movement(
     rng: np.random.Generator,
     description: dict,
     count: int,
-    walls: Walls,
+    walls: Bounds,
     ends: np.ndarray,
     radius: float,
 ) -> tuple[np.ndarray, np.ndarray]:

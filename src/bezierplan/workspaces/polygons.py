@@ -7,6 +7,7 @@ import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.grown import Growth
+from bezierplan.workspaces.limits import Bounds
 
 if TYPE_CHECKING:
     import shapely
@@ -21,7 +22,7 @@ class Polygons:
     by a robot's radius, if they did. The arrays are read-only.
     """
 
-    bounds: tuple[float, float, float, float]
+    bounds: Bounds
     obstacles: tuple[tuple[np.ndarray, ...], ...]
     unit: str
     growth: Growth | None = None
@@ -59,11 +60,17 @@ def rings(shape: "shapely.Geometry") -> list[np.ndarray]:
     """The boundary of a shape's polygons, not closed: rings (n, 2), the inside on their left."""
     import shapely
 
-    return [
-        shapely.get_coordinates(ring)[:-1]
-        for part in map(shapely.geometry.polygon.orient, parts(shape))
-        for ring in (part.exterior, *part.interiors)
-    ]
+    turned = map(shapely.geometry.polygon.orient, parts(shape))
+    return [ring for part in turned for ring in rings_of(part)]
+
+
+def rings_of(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
+    """The rings (n, 2) of a polygon, the outer one first, each without its last position."""
+    import shapely
+
+    return tuple(
+        shapely.get_coordinates(ring)[:-1] for ring in (polygon.exterior, *polygon.interiors)
+    )
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

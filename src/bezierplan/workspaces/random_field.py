@@ -9,6 +9,7 @@ import numpy as np
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.seeds import generator
 
 # Number of fields, and of draws of one circle, before giving up.
@@ -77,7 +78,7 @@ def end_cells(grid: Grid, problem: dict) -> list[tuple[int, int]]:
 def random_centres(
     rng: np.random.Generator,
     count: int,
-    bounds: tuple[float, float, float, float],
+    bounds: Bounds,
     ends: np.ndarray,
     least: float,
 ) -> np.ndarray:

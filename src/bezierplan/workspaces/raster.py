@@ -71,8 +71,7 @@ def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
 
     free = polygons.free()
     rows, columns = grid.occupied.shape
-    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-    low = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE)
-    high = grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE)
+    corner = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1)
+    low, high = grid.in_units(corner + _SAME_LINE), grid.in_units(corner + 1 - _SAME_LINE)
     shapely.prepare(free)
     return ~shapely.covers(free, shapely.box(low[..., 0], low[..., 1], high[..., 0], high[..., 1]))

@@ -22,8 +22,8 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import Growth, grown_of
-from bezierplan.workspaces.limits import SMALLEST_FEATURE
-from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
+from bezierplan.workspaces.limits import SMALLEST_FEATURE, Bounds
+from bezierplan.workspaces.polygons import Polygons, cross, rings, rings_of, unit
 
 if TYPE_CHECKING:
     import shapely
@@ -75,13 +75,13 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
         bounds = _shrunk(workspace.bounds, radius)
         growth = Growth(radius, workspace, workspace.centres)
         return replace(workspace, bounds=bounds, radii=workspace.radii + radius, growth=growth)
-    if isinstance(workspace, Polygons):
-        return _polygons(workspace, _clean(workspace.union()), workspace.bounds, radius)
-    if isinstance(workspace.shapes, Polygons):
-        polygons = _polygons(
-            workspace, _clean(workspace.shapes.union()), workspace.shapes.bounds, radius
-        )
+    shapes = workspace.shapes if isinstance(workspace, Grid) else workspace
+    if isinstance(shapes, Polygons):
+        polygons = _polygons(workspace, _clean(shapes.union()), shapes.bounds, radius)
+        if isinstance(workspace, Polygons):
+            return polygons
         return raster.from_polygons(polygons, workspace.cell, "overlap")
+    assert isinstance(workspace, Grid)  # neither circles nor polygons
     shape = _union_of_cells(workspace)
     if shape is None:
         return by_cells(workspace, radius)
@@ -110,9 +110,7 @@ def check_radius(radius: float) -> None:
         )
 
 
-def _shrunk(
-    bounds: tuple[float, float, float, float], radius: float
-) -> tuple[float, float, float, float]:
+def _shrunk(bounds: Bounds, radius: float) -> Bounds:
     left, right, bottom, top = bounds
     if min(right - left, top - bottom) < 2 * radius + SMALLEST_FEATURE:
         raise _nothing_free(radius)
@@ -129,7 +127,7 @@ def _nothing_free(radius: float) -> ValueError:
 def _polygons(
     workspace: Workspace,
     shape: "shapely.Geometry",
-    bounds: tuple[float, float, float, float],
+    bounds: Bounds,
     radius: float,
 ) -> Polygons:
     """Polygons around everything closer to a shape than the radius."""
@@ -142,13 +140,8 @@ def _polygons(
     if inside.difference(outline).area == 0:
         raise _nothing_free(radius)
     parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
-    obstacles = tuple(
-        tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors))
-        for part in parts
-    )
-    return Polygons(
-        limits, obstacles, workspace.unit, Growth(radius, workspace, read_only(centres, float))
-    )
+    growth = Growth(radius, workspace, read_only(centres, float))
+    return Polygons(limits, tuple(map(rings_of, parts)), workspace.unit, growth)
 
 
 def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
@@ -208,11 +201,10 @@ def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndar
     """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and
     after each.
     """
-    around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings(shape)]
-    nothing = np.empty((0, 2))
-    if not around:
-        return nothing, nothing, nothing
-    corners, before, after = (np.concatenate([nothing, *each]) for each in zip(*around))
+    every = [np.empty((0, 2)), *rings(shape)]
+    corners, before, after = (
+        np.concatenate([np.roll(ring, by, axis=0) for ring in every]) for by in (0, 1, -1)
+    )
     return corners, before, after
 
 

@@ -6,16 +6,17 @@ after which a robot has failed.
 """
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from bezierplan.kernels import compiled
 from bezierplan.workspaces import files, random_field
-from bezierplan.workspaces.arrays import read_only
+from bezierplan.workspaces.arrays import freeze
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import Bounds
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,8 @@ class MovingCircles:
     uniformly along a straight line.
     """
 
-    bounds: tuple[float, float, float, float]
-    walls: tuple[float, float, float, float]
+    bounds: Bounds
+    walls: Bounds
     centres: np.ndarray
     velocities: np.ndarray
     radii: np.ndarray
@@ -42,8 +43,7 @@ class MovingCircles:
     unit: str
 
     def __post_init__(self) -> None:
-        for name in ("centres", "velocities", "radii"):
-            object.__setattr__(self, name, read_only(getattr(self, name), float))
+        freeze(self, "centres", "velocities", "radii")
 
     def at(self, step: int) -> np.ndarray:
         """Centres (n, 2) at a whole step, in units."""
@@ -53,15 +53,14 @@ class MovingCircles:
         """What planners see at a step: the circles, grown by a margin in units, or the cells that
         they occupy.
         """
-        circles = Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
+        circles = self.obstacles(step, margin)
         if self.view == "circles":
             return circles
-        field = Circles(self.walls, circles.centres, circles.radii, self.unit)
-        return random_field.from_circles(field)
+        return random_field.from_circles(replace(circles, bounds=self.walls))
 
-    def obstacles(self, step: int) -> Circles:
-        """What the robot must not enter at a step."""
-        return Circles(self.bounds, self.at(step), self.radii, self.unit)
+    def obstacles(self, step: int, margin: float = 0.0) -> Circles:
+        """What the robot must not enter at a step; grown by a margin in units."""
+        return Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ class ChangingCells:
     end: int
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "moments", read_only(self.moments, float))
+        freeze(self, "moments")
 
     @property
     def unit(self) -> str:

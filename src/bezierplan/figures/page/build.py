@@ -32,18 +32,6 @@ MARKS = {
 _AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
-def write(
-    job: PageJob, folder: Path, summary: list[str] | None, proof: str | None, file: str
-) -> None:
-    """Write the page.
-
-    folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    baseline_comparison.csv, if the scale has them. proof: the file of the check of the runs
-    shown (`running.recheck`), if there is one.
-    """
-    Path(file).write_text(html(page(job, folder, summary, proof), folder), encoding="utf-8")
-
-
 def page(
     job: PageJob,
     folder: Path,
@@ -51,7 +39,12 @@ def page(
     proof: str | None = None,
     evidence: reader.Evidence | None = None,
 ) -> SimpleNamespace:
-    """What the templates show. data: what the viewer reads. evidence: as for `reader.studies`."""
+    """What the templates show. data: what the viewer reads.
+
+    folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
+    baseline_comparison.csv, if the scale has them. proof: the file of the check of the runs
+    shown (`running.recheck`), if there is one. evidence: as for `reader.studies`.
+    """
     tables = [reader.read(file) for file in summary] if summary else None
     studies = reader.studies(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}

@@ -10,9 +10,10 @@ MOST_TIMES = 8.0
 """An axis of ratios reaches from one over this to this."""
 
 
-def along(value: float, low: float, high: float) -> float:
-    """The place of a value on a logarithmic axis from 0 to 100; at an end for one beyond it."""
-    share = math.log(min(max(value, low), high) / low) / math.log(high / low)
+def along(ratio: float) -> float:
+    """The place of a ratio on a logarithmic axis from 0 to 100; at an end for one beyond it."""
+    low, high = 1 / MOST_TIMES, MOST_TIMES
+    share = math.log(min(max(ratio, low), high) / low) / math.log(high / low)
     return round(100 * share, 2)
 
 
@@ -31,9 +32,9 @@ def ratios(studies: list[SimpleNamespace]) -> list[Row]:
             dots = [
                 {
                     "number": cell,
-                    "at": along(1 + cell["apart"], 1 / MOST_TIMES, MOST_TIMES),
+                    "at": along(1 + cell["apart"]),
                     "ends": [
-                        along((end or edge) / cell["value_published"], 1 / MOST_TIMES, MOST_TIMES)
+                        along((end or edge) / cell["value_published"])
                         for end, edge in (
                             (cell["low95_predicted"], 1e-9),
                             (cell["high95_predicted"], 1e9),

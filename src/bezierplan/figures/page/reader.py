@@ -142,12 +142,9 @@ def _artefact(study: str, name: str, artefact: Any) -> Row:
     """A table or figure: its title, what the paper says of its own, the runs behind it, its
     address, and the path of its files without endings.
     """
-    return {
+    return artefact._asdict() | {
         "name": name,
         "address": address(study, name),
-        "title": artefact.title,
-        "says": artefact.says,
-        "behind": artefact.behind,
         "stem": f"{study}/{tree(name)}/{name}",
         "of_paper": tree(name) == "paper",
     }
@@ -221,12 +218,10 @@ def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
     heads = len(spec.index)
     numbers = {(cell["table_row"], cell["table_column"]): cell for cell in cells}
     rows = []
-    for row, (names, texts) in enumerate(
-        zip(ours.iloc[:, :heads].to_numpy(), ours.iloc[:, heads:].to_numpy(), strict=True)
-    ):
-        own = [numbers.get((row, column)) for column in range(len(texts))]
+    for row, texts in enumerate(ours.to_numpy().tolist()):
+        own = [numbers.get((row, column)) for column in range(len(texts) - heads)]
         printed = [cell["as_printed"] if cell else "" for cell in own]
-        rows.append((names.tolist(), list(zip(printed, texts, own, strict=True))))
+        rows.append((texts[:heads], list(zip(printed, texts[heads:], own, strict=True))))
     return {"head": list(ours), "rows": rows, "note": spec.note}
 
 

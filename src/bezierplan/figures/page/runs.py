@@ -18,9 +18,9 @@ from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
-from bezierplan.workspaces import files, grid
+from bezierplan.workspaces import files, worlds
+from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.problem import Problem
-from bezierplan.workspaces.worlds import MovingCircles, World
 
 # An experiment with more problems than this is shown as a whole only. Failed runs shown of a
 # method.
@@ -59,9 +59,7 @@ def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[R
         groups = [*ranking.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
     choice = []
     for problem, runs in groups:
-        by_method = dict(
-            list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False))
-        )
+        by_method = dict(iter(runs.groupby("method", sort=False)))
         choice += [
             _shown(experiment, problem, method, by_method[method])
             for method in content.methods
@@ -78,10 +76,7 @@ def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[R
         for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
     rows = pd.concat(kept) if kept else ranking
-    made, moving = (
-        problem_files.read(content.problems),
-        world_files.read(content.problems),
-    )
+    made, moving = problem_files.read(content.problems), world_files.read(content.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
     traces = _traces(content.traces, list(by_name))
     prefix = f"{study}/{experiment}/"
@@ -135,13 +130,16 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Ro
 
 
 def _shapes(problem: Problem) -> dict[str, Any]:
-    shapes = json.loads(
-        files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}")
-    )
+    shapes = _rounded_json(files.to_json(problem.workspace))
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
-def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Series) -> Row:
+def _rounded_json(text: str) -> dict[str, Any]:
+    """The content of JSON with numbers of seven digits."""
+    return json.loads(text, parse_float=lambda number: float(f"{float(number):.7g}"))
+
+
+def _problem(workspace: str, problem: Problem, world: worlds.World | None, bound: pd.Series) -> Row:
     """A workspace with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
     size = _size(problem.workspace.bounds)
     path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
@@ -155,19 +153,17 @@ def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Se
     }
 
 
-def _world(world: World) -> Row:
+def _world(world: worlds.World) -> Row:
     """How obstacles move, time in steps: circles (x, y, velocities, radius), whose centres are
     reflected at walls; or cells that change at some moments, counted row by row from the top left
     one.
     """
-    if isinstance(world, MovingCircles):
-        table = np.column_stack([world.centres, world.velocities, world.radii])
-        circles = [[float(f"{value:.7g}") for value in circle] for circle in table]
-        return {"walls": list(world.walls), "circles": circles}
-    cells = ["".join(grid.to_lines(each)) for each in world.maps]
+    if isinstance(world, worlds.MovingCircles):
+        content = _rounded_json(worlds.to_json(world))
+        return {"walls": list(world.walls), "circles": content["circles"]}
     changed = [
-        [n for n, (was, now) in enumerate(zip(before, after, strict=True)) if was != now]
-        for before, after in pairwise(cells)
+        np.flatnonzero(before.occupied[::-1] != after.occupied[::-1]).tolist()
+        for before, after in pairwise(world.maps)
     ]
     return {"circles": [], "moments": world.moments.tolist(), "changed": changed}
 
@@ -203,15 +199,12 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     distances = [0.0]
     for place in shapely.points(trace[1:].astype(float)):
         ahead = substring(line, distances[-1], distances[-1] + pace)
-        distances.append(
-            distances[-1] + shapely.line_locate_point(ahead, place)
-            if ahead.length > 0
-            else distances[-1]
-        )
+        step = shapely.line_locate_point(ahead, place) if ahead.length > 0 else 0.0
+        distances.append(distances[-1] + step)
     return np.array(distances)
 
 
-def _run(row: Row, bounds: tuple[float, float, float, float], problem: str) -> Row:
+def _run(row: Row, bounds: Bounds, problem: str) -> Row:
     """A run, its points rounded to what a picture shows. claimed: the planner's own verdict."""
     from bezierplan.figures.panels.paths import steps
 
@@ -237,7 +230,7 @@ def _run(row: Row, bounds: tuple[float, float, float, float], problem: str) -> R
     }
 
 
-def _size(bounds: tuple[float, float, float, float]) -> float:
+def _size(bounds: Bounds) -> float:
     return max(bounds[1] - bounds[0], bounds[3] - bounds[2])
 
 
@@ -268,12 +261,7 @@ def _history(history: np.ndarray) -> list[tuple[int, float]]:
     """
     values = np.asarray(history, dtype=float)
     known = np.flatnonzero(np.isfinite(values))
-    if not len(known):
-        return []
-    turns = known[np.flatnonzero(np.diff(values[known], prepend=np.nan) != 0)]
+    turns = known[np.diff(values[known], prepend=np.nan) != 0]
     if len(turns) > _MOST_STEPS:
         turns = turns[np.unique(np.linspace(0, len(turns) - 1, _MOST_STEPS).astype(int))]
-    return [
-        (int(at), float(f"{values[at]:.6g}"))
-        for at in dict.fromkeys([*turns.tolist(), int(known[-1])])
-    ]
+    return [(int(at), float(f"{values[at]:.6g}")) for at in np.union1d(turns, known[-1:])]

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from bezierplan.analysis.results import Results
+    from bezierplan.workspaces import files
     from bezierplan.workspaces.problem import Problem
 
 MOST_PANELS = 26
@@ -92,13 +93,6 @@ class Sources:
     study: str = ""
     problems: Mapping[str, Problem] = field(default_factory=dict)
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
-
-    def runs(self, experiment: str, where: dict[str, Any]) -> Results:
-        """Results of an experiment, with some of its runs."""
-        from bezierplan.analysis.results import select
-
-        results = self.results[experiment]
-        return results._replace(runs=select(results.runs, where))
 
     def table(self, panel: TablePanel) -> pd.DataFrame:
         """The table of a function, which is called once for all panels that draw the same one: with
@@ -162,7 +156,14 @@ class RunsPanel(Panel):
 
     def source(self, sources: Sources) -> Any:
         """Results of the experiment, with the runs that are shown."""
-        return sources.runs(self.experiment, self.where)
+        from bezierplan.analysis.results import select
+
+        results = sources.results[self.experiment]
+        return results._replace(runs=select(results.runs, self.where))
+
+    def home(self, frame: pd.DataFrame, scene: Any) -> files.Workspace:
+        """The workspace of the runs in the table of what is drawn."""
+        return scene.problems[self.experiment][frame["problem"].iloc[0]].workspace
 
 
 class TablePanel(Panel):

@@ -64,7 +64,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     row = frame.iloc[0]
-    unit = scene.problems[options.experiment][row["problem"]].workspace.unit
+    unit = options.home(frame, scene).unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
     axes.set_ylabel(f"signed curvature (1/{unit})")

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from bezierplan.analysis import naming
 from bezierplan.figures import glance, style
-from bezierplan.figures.groups import axis_label, published, runs_note, summary, unit_of
+from bezierplan.figures.groups import axis_label, published, runs_note, show_metric, summary
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column
 
@@ -100,8 +100,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     style.name_places(axes, names, axis_label(x, scene))
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_box_aspect(_HEIGHT)
-    axes.set_ylabel(axis_label(options.metric, scene, options.statistic))
-    style.measure(axes.yaxis, options.scale, unit_of(options.metric, scene))
+    show_metric(axes, options.metric, scene, options.statistic, options.scale)
     metric = f"{options.statistic} {naming.column_name(options.metric, labels)}"
     return Note(
         "",

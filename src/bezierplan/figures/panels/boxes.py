@@ -21,7 +21,7 @@ from bezierplan.figures.groups import (
     measured,
     published,
     runs_note,
-    unit_of,
+    show_metric,
     values,
 )
 from bezierplan.figures.panels import MetricPanel, Note
@@ -107,15 +107,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the boxes side by side."""
     import seaborn as sns
 
-    by, metric = options.by, options.metric
+    by = options.by
     order = style.in_order(frame[by], options.where)
     look = {"color": style.LIGHT_BLUE, "linecolor": style.BLUE, "linewidth": 0.7, "width": 0.6}
     box = frame[frame["part"].isin(_BOX)]
     with warnings.catch_warnings(action="ignore"):  # seaborn passes what matplotlib will drop
         sns.boxplot(box, x=by, y="value", order=order, whis=(0, 100), ax=axes, **look)
-    places = frame.assign(x=frame[by].map({group: number for number, group in enumerate(order)}))
-    places["y"] = places["value"]
-    style.draw_parts(axes, places, _MARKS)
+    places = frame[by].map(order.index, na_action="ignore")
+    style.draw_parts(axes, frame.assign(x=places, y=frame["value"]), _MARKS)
     for part, own in frame.groupby("part")["value"]:
         if part in LIMITS:
             axes.axhline(own.iloc[0], zorder=1.5, **LIMITS[part])
@@ -124,8 +123,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.axhline(options.limit, zorder=1.5, label=label, **style.PUBLISHED)
     names = [naming.printed(group, by, scene.labels) for group in order]
     style.name_places(axes, names, axis_label(by, scene))
-    axes.set_ylabel(axis_label(metric, scene))
-    style.measure(axes.yaxis, options.scale, unit_of(metric, scene))
+    show_metric(axes, options.metric, scene, scale=options.scale)
     medians = frame[frame["part"].isin(["median", "none"])]
     best = glance.extremes("median", medians, by, "value", scene.labels)
     where = "method" if by == "method" else "place"

@@ -16,11 +16,11 @@ from bezierplan.analysis import naming, statistics
 from bezierplan.figures import glance, style
 from bezierplan.figures.groups import (
     LIMITS,
-    axis_label,
     grouped,
     limits,
     published,
     runs_note,
+    show_metric,
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
@@ -120,11 +120,15 @@ def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
         _histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
     )
     own = np.nan if run is None else _histories(run.to_frame().T, generations)[0]
-    drawn = pd.DataFrame({"generation": range(generations), "objective": own})
-    drawn = drawn.assign(
-        median=median, quartile1=low, quartile3=high, bound=results.runs["bound"].iloc[0], **names
-    )
-    return drawn[[*names, *drawn.columns.difference(names, sort=False)]]
+    drawn = {
+        "generation": range(generations),
+        "objective": own,
+        "median": median,
+        "quartile1": low,
+        "quartile3": high,
+        "bound": results.runs["bound"].iloc[0],
+    }
+    return pd.DataFrame(names | drawn)
 
 
 def _of_group(group: Results, options: Options, generations: int) -> Iterable[dict[str, Any]]:
@@ -172,8 +176,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.hue is not None:
         return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame, context=options.context)
-    axes.set_ylabel(axis_label("objective", scene))
-    style.measure(axes.yaxis)
+    show_metric(axes, "objective", scene)
     return Note("", run_note(frame, feasible_note(frame)))
 
 
@@ -212,8 +215,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
         if len(groups) > _MOST_BANDS:
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
-    axes.set_ylabel(axis_label("objective", scene, options.statistic))
-    style.measure(axes.yaxis)
+    show_metric(axes, "objective", scene, options.statistic)
     ends = frame[frame["generation"] == frame["generation"].max()]
     name = f"final {options.statistic}"
     best = glance.extremes(name, ends, options.hue, "objective", scene.labels)

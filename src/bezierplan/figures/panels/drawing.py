@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-COLUMNS = ["mark", "group", "role", "x", "y", "width", "height", "radius", "text"]
+COLUMNS = ["mark", "group", "role", "x", "y", "width", "height", "radius", "text", "label"]
 # Colours of fills and lines, and marks of single points, by role. Neighbours differ in lightness or
 # in shape.
 _FILL = {
@@ -61,8 +61,7 @@ def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
     style: obstacle, start, target, first, second, third, accent, muted or note. label: its entry in
     the legend; empty for none.
     """
-    columns = [*COLUMNS, "label"]
-    return marks.reindex(columns=[*columns, *marks.columns.difference(columns, sort=False)])
+    return marks.reindex(columns=[*COLUMNS, *marks.columns.difference(COLUMNS, sort=False)])
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -70,9 +69,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_aspect("equal")
     alone = options.workspace is None
     if not alone:
-        home = scene.workspaces[options.workspace]
-        workspaces.shade(axes, workspaces.parts(home))
-        workspaces.scale(axes, home.unit)
+        workspaces.draw_home(axes, scene.workspaces[options.workspace])
     # Groups of neighbouring rows, so that later rows of the table lie on top.
     names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
     changed = (names != names.shift()).cumsum()

@@ -15,8 +15,8 @@ from bezierplan.figures.groups import (
     axis_label,
     published,
     runs_note,
+    show_metric,
     summary,
-    unit_of,
 )
 from bezierplan.figures.panels import (
     MetricPanel,
@@ -135,9 +135,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlabel(axis_label(x, scene))
     single = options.experiment is None or frame["n"].max() < 2
     statistic = "" if single else options.statistic
-    axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
-    style.measure(axes.yaxis, options.scale, unit_of(options.metric, scene))
+    show_metric(axes, options.metric, scene, statistic, options.scale)
     if options.experiment is None:
         return Note()
     ours = frame[frame["part"] == "statistic"]

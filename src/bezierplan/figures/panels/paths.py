@@ -6,8 +6,7 @@ Or several paths in one workspace, a picked run for each value of a column.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -30,7 +29,6 @@ from bezierplan.schema.model import (
     PrintedTable,
     wrong,
 )
-from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Path, Workspace
 
@@ -51,7 +49,7 @@ _WIDEST, _NARROWEST = 2.0, 1.0
 _CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
 # In the order of the legend.
-_LOOK = {
+LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
     "control": {**_CONTROL_POINT, "label": "control points"},
     "points": {**_CONTROL_POINT, "label": "control points"},
@@ -132,7 +130,11 @@ class Explicit(Model):
 
 
 class Options(RunsPanel):
-    """Keys of a panel: of picked runs, or of an explicit path."""
+    """Keys of a panel: of picked runs, or of an explicit path. With hue, `one` is meant for each of
+    its values.
+    """
+
+    one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     pick: Pick = Field(None, description=PICK)
@@ -170,11 +172,6 @@ class Options(RunsPanel):
         """Runs; nothing for an explicit path."""
         return None if self.experiment is None else super().source(sources)
 
-    @property
-    def one(self) -> tuple[str, ...]:
-        """Columns of which the runs have one value: one for each of hue."""
-        return ("problem", "method")
-
     @model_validator(mode="after")
     def _check_source(self) -> Options:
         exactly_one(self, "pick", "explicit")
@@ -207,7 +204,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if options.explicit is not None:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
-        return table({"start": [start], "target": [target]} | _parts(path, options.control))
+        ends = {"start": [start], "target": [target]}
+        return workspaces.places(ends | _parts(path, options.control))
     if options.hue is not None:
         alone = options.but(hue=None, control="none")
         groups = results.runs.groupby(options.hue)
@@ -228,7 +226,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             ("appeared", problem.workspace, before),
             ("vanished", before, problem.workspace),
         ):
-            places[part] = _centres(cells, np.flatnonzero(cells.occupied & ~others.occupied))
+            row, column = np.nonzero(cells.occupied & ~others.occupied)
+            places[part] = cells.in_units(np.column_stack([column, row]) + 0.5)
     if options.printed is not None and results.published is not None:
         printed = published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
@@ -239,7 +238,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         places |= _parts(path, options.control)
         if not run["feasible"]:
             places["collision"] = [curves.point_at(path, run["collision_at"])]
-    return table(places).assign(**names)[[*names, "part", "x", "y"]]
+    return workspaces.places(places).assign(**names)[[*names, "part", "x", "y"]]
 
 
 def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
@@ -253,22 +252,6 @@ def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
         alone = "nodes" if path.curve == "polyline" else "points"
         places["control" if control == "all" else alone] = path.points
     return places | {"path": steps(path)}
-
-
-def _centres(grid: Grid, cells: Any) -> np.ndarray:
-    """Centres (n, 2), in units, of cells with these numbers."""
-    return np.reshape([grid.centre(int(number)) for number in cells], (-1, 2))
-
-
-def table(places: Mapping[str, Any]) -> pd.DataFrame:
-    """Points (n, 2) by part as rows."""
-    import pandas as pd
-
-    points = [
-        pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part)
-        for part, xy in places.items()
-    ]
-    return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 
 
 def steps(path: Path) -> np.ndarray:
@@ -286,13 +269,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.set_aspect("equal")
         axes.margins(0.06)
     else:
-        workspace = workspaces.draw_home(axes, frame, scene, options)
-        unit = workspace.unit
-        _draw_changes(axes, frame, workspace)
+        home = options.home(frame, scene)
+        unit = home.unit
+        workspaces.draw_home(axes, home)
+        _draw_changes(axes, frame, home)
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
-        draw_parts(axes, frame, clip=options.view is not None)
+        style.draw_parts(axes, frame, LOOK, clip_on=options.view is not None)
         if options.explicit is None:
             note = _note(frame, unit)
     workspaces.draw_letters(axes, frame, options.letters)
@@ -324,17 +308,13 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
         measure = f"{rows['measure'].iloc[0]:.2f}" if len(path) else "no path"
         clauses.append(f"{look['label']} {measure}")
     once = frame[frame["part"].isin(["start", "target", "bound", "collision"])]
-    draw_parts(axes, once.drop_duplicates(["part", "x", "y"]), clip=options.view is not None)
+    once = once.drop_duplicates(["part", "x", "y"])
+    style.draw_parts(axes, once, LOOK, clip_on=options.view is not None)
     there = frame.loc[frame["part"] == "path", options.hue].nunique()
     return Note(
         "" if there == len(groups) else f"{there} of {len(groups)} have a path",
         f"{axis_label(options.measure, scene)}: {', '.join(clauses)}",
     )
-
-
-def draw_parts(axes: Axes, frame: pd.DataFrame, *, clip: bool) -> None:
-    """Draw the points of each part; anything beyond the panel only if they are not clipped."""
-    style.draw_parts(axes, frame, _LOOK, clip_on=clip)
 
 
 def _note(frame: pd.DataFrame, unit: str) -> Note:

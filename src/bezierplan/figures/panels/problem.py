@@ -36,9 +36,7 @@ def data(problem: Problem, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data` in their workspace."""
-    home = scene.places[options.problem].workspace
-    workspaces.shade(axes, workspaces.parts(home))
-    workspaces.scale(axes, home.unit)
+    workspaces.draw_home(axes, scene.places[options.problem].workspace)
     style.draw_parts(axes, frame, workspaces.ENDS, clip_on=False)
     workspaces.draw_letters(axes, frame, options.letters)
     return Note()

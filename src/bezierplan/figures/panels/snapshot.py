@@ -120,15 +120,14 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         places.append(("collision", hit))
     for number, (part, points) in enumerate(places):
-        own = pd.DataFrame(points, columns=["x", "y"]).assign(part=part)
+        own = workspaces.places({part: points})
         parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
     return pd.concat([*parts, workspaces.ends(problem)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
     workspaces.shade(axes, frame)
-    workspaces.scale(axes, unit)
+    workspaces.scale(axes, options.home(frame, scene).unit)
     circles = frame[frame["part"] == "circle"]
     if len(circles):
         arrows = _ARROW_STEPS * circles[["x_velocity", "y_velocity"]].to_numpy()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -10,19 +11,20 @@ from pydantic import Field
 
 from bezierplan.analysis.naming import amount
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel, RunsPanel, Sources
+from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.schema.model import Flag, Line
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
+from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-    from matplotlib.patches import Circle, PathPatch
+    from matplotlib.patches import Patch
 
 
 _CELLS = {
@@ -44,9 +46,10 @@ _OUTLINE = {
     "zorder": 3,
 }
 
-START = style.mark("s", 7, style.BLACK, label="start", zorder=4.5)
-TARGET = style.mark("*", 12, style.BLACK, label="target", zorder=4.5)
-ENDS = {"start": START, "target": TARGET}
+ENDS = {
+    "start": style.mark("s", 7, style.BLACK, label="start", zorder=4.5),
+    "target": style.mark("*", 12, style.BLACK, label="target", zorder=4.5),
+}
 
 Letters = Annotated[list[Line], Field(min_length=2, max_length=2)]
 LETTERS = "what is written next to start and target: a list of two"
@@ -113,20 +116,30 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
 
 def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace itself, without numbers: rows as in `data`."""
-    shapes, cells = workspace, []
+    shapes, drawn = workspace, []
     if isinstance(workspace, Grid):
         shapes = workspace.shapes
         if not shapes or workspace.occupied.size <= _MOST_CELLS:
-            cells = [_cells(workspace, workspace, "none")]
-    return _table(workspace.bounds, *cells, *([_shapes(shapes)] if shapes else []))
+            drawn.append(_cells(workspace, workspace, "none"))
+    if shapes:
+        drawn.append(_shapes(shapes))
+    return _table(workspace.bounds, *drawn)
 
 
 def ends(problem: Problem) -> pd.DataFrame:
-    """Start and target of a problem: rows with part, x and y."""
+    """Start and target of a problem, as `places` gives them."""
+    return places({"start": [problem.start], "target": [problem.target]})
+
+
+def places(points: Mapping[str, Any]) -> pd.DataFrame:
+    """Points (n, 2) by part as rows: part, x and y."""
     import pandas as pd
 
-    places = [("start", *problem.start), ("target", *problem.target)]
-    return pd.DataFrame(places, columns=["part", "x", "y"])
+    tables = [
+        pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part)
+        for part, xy in points.items()
+    ]
+    return pd.concat(tables, ignore_index=True)[["part", "x", "y"]]
 
 
 def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
@@ -134,8 +147,9 @@ def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
 
     if isinstance(workspace, Circles):
         x, y = workspace.centres.T
-        of_circles = {"part": "circle", "x": x, "y": y, "size": workspace.radii}
-        return pd.DataFrame(of_circles | {"obstacle": range(len(x))})
+        number = range(len(x))
+        circles = {"part": "circle", "x": x, "y": y, "size": workspace.radii, "obstacle": number}
+        return pd.DataFrame(circles)
     rings = [
         pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
         for obstacle, outline in enumerate(workspace.obstacles)
@@ -144,7 +158,7 @@ def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
-def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
+def _table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
     """The corners of the bounds and everything drawn within them, with all columns; heights only if
     there are any.
     """
@@ -184,7 +198,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     numbered = frame[frame["number"].notna()]
     # Narrow digits: three of them have to fit into a cell.
     look = {"family": "STIXGeneral", "ha": "center", "va": "center_baseline", "in_layout": False}
-    for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
+    for x, y, number in numbered[["x", "y", "number"]].to_numpy():
         axes.text(x, y, str(int(number)), **look)
     if numbered.empty:
         scale(axes, unit)
@@ -194,14 +208,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     return Note("" if (side, unit) == ("1", "cell") else f"cells of {side} x {amount(side, unit)}")
 
 
-def draw_home(
-    axes: Axes, frame: pd.DataFrame, scene: Any, options: RunsPanel, **more: bool
-) -> Workspace:
-    """Draw the workspace of the runs that a panel shows, with its scale, and return it."""
-    home = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
+def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:
+    """Draw the workspace of what a panel shows, with its scale; more: as for `shade`."""
     shade(axes, parts(home), **more)
     scale(axes, home.unit)
-    return home
 
 
 def scale(axes: Axes, unit: str) -> None:
@@ -250,11 +260,7 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or len(cells) else _OBSTACLE
-    shapes = [
-        *_circles(frame[frame["part"] == "circle"]),
-        *_polygons(frame[frame["part"] == "ring"]),
-    ]
-    if shapes:
+    if shapes := _shapes_of(frame):
         obstacles = PatchCollection(shapes, label="obstacle", **look)
         axes.add_collection(obstacles, autolim=False)
 
@@ -284,20 +290,15 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
         draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
 
 
-def _circles(circles: pd.DataFrame) -> list[Circle]:
-    from matplotlib.patches import Circle
-
-    return [
-        Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])
-    ]
-
-
-def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
+def _shapes_of(frame: pd.DataFrame) -> list[Patch]:
+    """Circles, then polygons."""
     import shapely
+    from matplotlib.patches import Circle
     from shapely.plotting import patch_from_polygon
 
-    outlines = [
-        [ring[["x", "y"]].to_numpy() for _, ring in obstacle.groupby("ring")]
-        for _, obstacle in rings.groupby("obstacle")
-    ]
-    return [patch_from_polygon(shapely.Polygon(outer, holes)) for outer, *holes in outlines]
+    circles = frame[frame["part"] == "circle"]
+    shapes = [Circle((x, y), size) for x, y, size in circles[["x", "y", "size"]].to_numpy()]
+    for _, obstacle in frame[frame["part"] == "ring"].groupby("obstacle"):
+        outer, *holes = (ring[["x", "y"]].to_numpy() for _, ring in obstacle.groupby("ring"))
+        shapes.append(patch_from_polygon(shapely.Polygon(outer, holes)))
+    return shapes

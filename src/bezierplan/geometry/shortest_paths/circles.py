@@ -109,7 +109,7 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
 
 def _shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
     """The shortest path from node 0 to node 1."""
-    _, path = dijkstra_path(_matrix(graph), 0, 1)
+    path = dijkstra_path(_matrix(graph))
     near = np.flatnonzero(np.isin(graph.ends, path).all(axis=1))
     edge_of = {tuple(ends): edge for edge, ends in zip(near, graph.ends[near].tolist())}
     taken, sweeps = [], []
@@ -338,17 +338,8 @@ def _covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
     step, other, distance = step[meets], other[meets], distance[meets]
     cosine = (distance**2 + radius**2 - other**2) / (2 * distance * radius)
     left, right, bottom, top = scene.bounds
-    margin = (
-        np.array(
-            [
-                right - centres[k, 0],
-                top - centres[k, 1],
-                centres[k, 0] - left,
-                centres[k, 1] - bottom,
-            ]
-        )
-        / radius
-    )
+    x, y = centres[k]
+    margin = np.array([right - x, top - y, x - left, y - bottom]) / radius
     outward = np.array([0.0, 0.5, 1.0, 1.5]) * math.pi
     middle = np.concatenate([np.arctan2(step[:, 1], step[:, 0]), outward[margin < 1]])
     return middle, np.arccos(np.clip(np.concatenate([cosine, margin[margin < 1]]), -1, 1))

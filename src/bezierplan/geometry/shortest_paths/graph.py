@@ -58,25 +58,22 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
     tail, head = np.nonzero(visible)
     lengths = np.hypot(*(points[head] - points[tail]).T)
     graph = coo_array((np.maximum(lengths, NO_LENGTH), (tail, head)), shape=visible.shape).tocsr()
-    _, nodes = dijkstra_path(graph, 0, 1)
-    if not len(nodes):
-        return no_path()
-    return along(points, nodes)
+    return along(points, dijkstra_path(graph))
 
 
-def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
-    """Length of a shortest path in a sparse, undirected graph, and its nodes; empty without one."""
+def dijkstra_path(graph: "csr_array") -> np.ndarray:
+    """The nodes of a shortest path from node 0 to node 1 in a sparse, undirected graph; none if
+    there is no path.
+    """
     from scipy.sparse.csgraph import dijkstra
 
-    distances, predecessors = dijkstra(
-        graph, directed=False, indices=start, return_predecessors=True
-    )
-    if math.isinf(distances[target]):
-        return math.inf, np.empty(0, dtype=np.int64)
-    nodes = [target]
-    while nodes[-1] != start:
+    distances, predecessors = dijkstra(graph, directed=False, indices=0, return_predecessors=True)
+    if math.isinf(distances[1]):
+        return np.empty(0, dtype=np.int64)
+    nodes = [1]
+    while nodes[-1] != 0:
         nodes.append(int(predecessors[nodes[-1]]))
-    return float(distances[target]), np.array(nodes[::-1])
+    return np.array(nodes[::-1])
 
 
 @compiled

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import runs_of
+from bezierplan.geometry.region import occupied_around, runs_of
 from bezierplan.geometry.shortest_paths.graph import way_back
 from bezierplan.kernels import allocation_free, compiled
 
@@ -48,9 +48,8 @@ def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
     column, row = corners.T
-    below_left, below_right, above_left, above_right = (
-        cells[row + up, column + right].astype(np.int64) for up in (0, 1) for right in (0, 1)
-    )
+    around = occupied_around(cells)[:, row, column].astype(np.int64)
+    below_left, below_right, above_left, above_right = around
     sides = above_left + above_right - below_left - below_right
     return Scene(cells, first_run, runs, corners, first_corner, slopes, sides, scale)
 

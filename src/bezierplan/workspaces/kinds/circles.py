@@ -9,7 +9,7 @@ from pydantic import Field
 from bezierplan.schema.model import Number
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import Bounds, Workspace, of_length
-from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers, check_thickness
+from bezierplan.workspaces.limits import bounds_of, check_gaps, check_numbers, check_thickness
 
 
 class Options(Workspace):
@@ -24,10 +24,8 @@ class Options(Workspace):
 
 def load(description: dict, folder: Path) -> Circles:
     """The circles that a description lists."""
-    x_low, x_high, y_low, y_high = map(float, description["bounds"])
-    limits = x_low, x_high, y_low, y_high
-    check_numbers(np.array(limits), "bounds")
-    check_bounds(limits)
+    check_numbers(np.array(description["bounds"], dtype=float), "bounds")
+    limits = bounds_of(description["bounds"])
     table = np.array(description["circles"], dtype=float).reshape(-1, 3)
     table[:, 2] = description.get("radius", table[:, 2])
     check_numbers(table, "circles")

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Number
-from bezierplan.workspaces import moving
+from bezierplan.workspaces import limits, moving
 from bezierplan.workspaces.kinds import REFLECTED, Bounds, World, of_length
 
 if TYPE_CHECKING:
@@ -31,9 +31,9 @@ class Options(World):
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
     """The circles that a description lists."""
-    walls = moving.walls_of(description["bounds"])
+    walls = limits.bounds_of(description["bounds"])
     table = np.array(description["circles"], dtype=float).reshape(-1, 5)
-    centres, radii, velocities = table[:, :2].copy(), table[:, 2].copy(), table[:, 3:].copy()
+    centres, radii, velocities = table[:, :2], table[:, 2], table[:, 3:]
     low, high = np.reshape(walls, (2, 2)).T
     if ((centres < low) | (centres > high)).any():
         raise ValueError(

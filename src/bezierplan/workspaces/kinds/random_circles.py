@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.schema.model import NotNegative, Positive, is_number, value
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
-from bezierplan.workspaces.limits import SMALLEST_FEATURE, check_bounds
+from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of
 from bezierplan.workspaces.random_field import random_centres
 from bezierplan.workspaces.seeds import generator
 
@@ -45,10 +45,9 @@ class Options(Workspace):
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles:
-    """The first so many circles of a layout. Raises ValueError for bounds without room, and if no
-    free place is found.
+    """The first so many circles of a layout. Raises ValueError for more than it has, for bounds
+    without room, and if no free place is found.
     """
-    check_bounds(_bounds(description))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     if problem["obstacles"] > description["circles"]:
         raise ValueError(
@@ -63,10 +62,11 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
 
     Centres are uniform within the bounds, or within the corridor; a circle that comes nearer to an
     end, (x, y) in units, than the gap is redrawn. name: that of study and workspace; number: that
-    of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
+    of the layout. Circles may overlap each other. Raises ValueError for bounds without room, and if
+    no free place is found.
     """
     rng = generator(name, number)
-    bounds = within = _bounds(description)
+    bounds = within = bounds_of(description["bounds"])
     origin, axes, places = np.zeros(2), np.eye(2), np.array(ends)
     if width := description.get("corridor"):
         # Centres are drawn in coordinates along and across the straight line.
@@ -81,11 +81,6 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
         centres.append(random_centres(rng, 1, within, places, radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
-
-
-def _bounds(description: dict) -> tuple[float, float, float, float]:
-    x_low, x_high, y_low, y_high = map(float, description["bounds"])
-    return x_low, x_high, y_low, y_high
 
 
 def first(circles: Circles, count: int) -> Circles:

@@ -7,9 +7,8 @@ from pydantic import Field
 
 from bezierplan.schema.model import NotNegative
 from bezierplan.workspaces import raster
-from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, text
+from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, polygons
 
 
 class Options(Workspace):
@@ -28,7 +27,6 @@ class Options(Workspace):
 
 def load(description: dict, folder: Path) -> Grid:
     """The cells that the polygons of a GeoJSON file occupy."""
-    content = text(description, "file", folder)
+    shapes = polygons.load(description, folder)
     with naming(description["file"]):
-        polygons = polygons_from_geojson(content, description["unit"], description.get("margin"))
-        return raster.from_polygons(polygons, float(description["cell"]), description["rule"])
+        return raster.from_polygons(shapes, float(description["cell"]), description["rule"])

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Positive
-from bezierplan.workspaces import moving
+from bezierplan.workspaces import limits, moving
 from bezierplan.workspaces.kinds import RandomMoving
 from bezierplan.workspaces.seeds import generator
 
@@ -32,7 +32,7 @@ class Options(RandomMoving):
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
     """Circles on a field, which planners see as cells. Raises ValueError if no place is free."""
     side, count = problem["side"], problem["obstacles"]
-    walls = moving.walls_of([0.0, side, 0.0, side])
+    walls = limits.bounds_of([0.0, side, 0.0, side])
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, side, *ends, count, problem["layout"])
     radius = description["radius"] * side

@@ -92,7 +92,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     levels = np.geomspace(values.min(), values.max(), _STEPS)
     axes.contourf(x, y, values, levels=levels, norm=colours.norm, cmap=colours.cmap)
     axes.contour(x, y, values, levels=levels, colors="#FFFFFF", linewidths=0.3)
-    workspaces.draw_home(axes, frame, scene, options, outlines=True)
+    workspaces.draw_home(axes, options.home(frame, scene), outlines=True)
     style.draw_parts(axes, frame, _LOOK, clip_on=False, zorder=4)
     bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
     numbers = round_numbers(values)

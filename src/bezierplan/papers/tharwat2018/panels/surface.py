@@ -26,7 +26,7 @@ class Options(landscape.Options):
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the nodes of `data` at a logarithmic height."""
-    unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
+    unit = options.home(frame, scene).unit
     x, y, values = landscape.nodes(frame)
     colours = landscape.scale_of(values).to_rgba(values)
     # Facets between every second node look the same when printed, and are drawn in a third of the

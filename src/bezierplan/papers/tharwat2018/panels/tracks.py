@@ -101,7 +101,8 @@ def _commonest(groups: pd.Series) -> list[float]:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    home = workspaces.draw_home(axes, frame, scene, options)
+    home = options.home(frame, scene)
+    workspaces.draw_home(axes, home)
     style.draw_parts(axes, frame, workspaces.ENDS)
     notes = []
     for (run, way), name, look in zip(frame.groupby("run"), _NAMES, _LINES):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from bezierplan.workspaces import moving
+from bezierplan.workspaces import limits, moving
 from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving, Size
 from bezierplan.workspaces.seeds import generator
 
@@ -30,7 +30,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free
     place is found.
     """
-    walls = moving.walls_of(description["bounds"])
+    walls = limits.bounds_of(description["bounds"])
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, *ends, problem["layout"])
     radius, count = description["radius"], problem["obstacles"]
