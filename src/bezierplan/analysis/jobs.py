@@ -89,9 +89,9 @@ class Problems(Job):
 
     def run(self, input_files, output_files, threads):
         """Build the problems, with the worlds of those that move."""
-        from bezierplan.running import problems, worlds
+        from bezierplan.running import problems
 
-        built, moving = worlds.build_all(self.descriptions, Path(self.folder))
+        built, moving = problems.build_all(self.descriptions, Path(self.folder))
         problems.write(built, self.descriptions.homes, output_files[0], moving)
 
 
@@ -103,10 +103,10 @@ class Bounds(Job):
 
     def run(self, input_files, output_files, threads):
         """Compute the bounds."""
-        from bezierplan.running import problems, rows, worlds
+        from bezierplan.running import problems, rows
 
-        file = input_files.problems
-        rows.write(worlds.bounds_of(problems.read(file), worlds.read(file)), output_files[0])
+        table = problems.bounds_of(*problems.read(input_files.problems))
+        rows.write(table, output_files[0])
 
 
 @dataclass(frozen=True)
@@ -123,10 +123,10 @@ class Runs(Job):
         """Run the method, or let the robot drive."""
         import pyarrow.parquet as parquet
 
-        from bezierplan.running import execution, problems, rows, worlds
+        from bezierplan.running import execution, problems, rows
 
-        file = input_files.problems
-        tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
+        built, moving = problems.read(input_files.problems)
+        tables = execution.run_chunk(built, self.chunk, moving)
         rows.write(tables[0], output_files.runs, self.digest)
         parquet.write_table(tables[1], output_files.times)
         for traces in tables[2:]:

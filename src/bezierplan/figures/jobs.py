@@ -88,7 +88,8 @@ class FigureFiles(Job):
         from bezierplan.analysis import results, study_code
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
-        from bezierplan.running import inputs, worlds
+        from bezierplan.running import inputs
+        from bezierplan.running import problems as problem_files
         from bezierplan.workspaces import files as workspace_files
 
         published = results.published_tables(input_files.sources)
@@ -102,7 +103,7 @@ class FigureFiles(Job):
             name: workspace_files.load(described, Path(self.folder))
             for name, described in self.workspaces.items()
         }
-        places, _ = worlds.build_all(self.problems, Path(self.folder))
+        places, _ = problem_files.build_all(self.problems, Path(self.folder))
         problems = {name: runs.problems for name, runs in experiments.items()}
         drawings = study_code.part_of(
             [name for name in self.code if study_code.part(name) == "panels"]

@@ -22,7 +22,7 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.running import answer, execution, problems, rows, worlds
+from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.jobs.watchdog import end_with_parent
@@ -141,7 +141,7 @@ def versions() -> dict[str, str]:
 
 def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     try:
-        return problems.read(file), worlds.read(file)
+        return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
         raise rows.misplaced(file, "not a whole file of problems") from None
 

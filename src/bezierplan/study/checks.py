@@ -22,7 +22,7 @@ from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
 from bezierplan.places import relative
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
-from bezierplan.running import columns, worlds
+from bezierplan.running import columns, problems
 from bezierplan.running.chunk import conditions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
@@ -235,7 +235,7 @@ class Checks:
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
         described = descriptions(study, {name: problem.plain("layouts") | drawn})
-        return worlds.build_all(described, study.folder)[0][name]
+        return problems.build_all(described, study.folder)[0][name]
 
     def experiment(self, name: str, experiment: Experiment) -> None:
         """Its problems and methods suit each other, and what it varies exists."""

@@ -373,7 +373,7 @@ def audited(
     rows = below_bound(on_its_maps, of_tables, primary) + of_any_paper(compared, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
-            made = problems.read(experiment_files[spec.experiment].problems)
+            made, _ = problems.read(experiment_files[spec.experiment].problems)
             rows += identified.of_table(name, published[name], spec.identify, made)
     return table(job.study, rows + of_paper(published))
 

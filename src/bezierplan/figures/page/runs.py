@@ -17,7 +17,6 @@ from bezierplan.analysis import results
 from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
-from bezierplan.running import worlds as world_files
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
@@ -78,10 +77,7 @@ def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[R
         for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
     rows = pd.concat(kept) if kept else ranking
-    made, moving = (
-        problem_files.read(content.problems),
-        world_files.read(content.problems),
-    )
+    made, moving = problem_files.read(content.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
     traces = _traces(content.traces, list(by_name))
     prefix = f"{study}/{experiment}/"
