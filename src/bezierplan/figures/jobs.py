@@ -8,7 +8,7 @@ from typing import Any
 
 from bezierplan.analysis.jobs import Job
 from bezierplan.figures.layout import Layout
-from bezierplan.figures.page.page_job import ExperimentView, PageJob
+from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
 from bezierplan.running.chunk import Chunk
@@ -126,8 +126,6 @@ class Page(Job):
     """The page of a scale."""
 
     page: PageJob
-    moving: list[str]
-    """The experiments, each by study/experiment, whose runs are drives."""
 
     def run(self, input_files, output_files, threads):
         """Write the page."""
@@ -136,22 +134,12 @@ class Page(Job):
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        experiments: dict[str, dict[str, ExperimentView]] = {key: {} for key in self.page.studies}
-        for place, files in inputs.experiments(self.shows, input_files).items():
-            key, _, name = place.partition("/")
-            methods, repeats = self.page.studies[key].experiments[name]
-            traces = [
-                str(Path(chunk).with_suffix(".traces.parquet"))
-                for chunk in files.chunks
-                if place in self.moving
-            ]
-            experiments[key][name] = ExperimentView(
-                methods, repeats, files.chunks, files.problems, files.bounds, traces
-            )
-        studies = {
-            key: own._replace(experiments=experiments[key])
-            for key, own in self.page.studies.items()
-        }
-        job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
-        summary, verified = list(input_files.summary), input_files.verified
-        build.write(job, folder, summary, verified, output_files.page)
+        folder = Path(input_files.verified).parent
+        page = build.page(
+            self.page,
+            folder,
+            list(input_files.summary),
+            input_files.verified,
+            results=inputs.experiments(self.shows, input_files),
+        )
+        Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")
