@@ -39,9 +39,11 @@ def follow(
             else math.inf
         )
         if not fresh and policy.replan in ("every_step", "when_changed"):
-            return DUE, np.array(times), np.array(progress)
+            event = DUE
+            break
         if not fresh and checks and free < way.length:
-            return BLOCKED, np.array(times), np.array(progress)
+            event = BLOCKED
+            break
         fresh = False
         limit = (
             way.length
@@ -52,19 +54,23 @@ def follow(
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
             time, s = arrival, limit
-            if s >= way.length:
-                return ARRIVED, np.array([*times, time]), np.array([*progress, s])
-            if time > times[-1]:
+            if s >= way.length or time > times[-1]:
                 times, progress = [*times, time], [*progress, s]
-            if policy.replan != "never" and limit < way.length:
-                return STOPPED, np.array(times), np.array(progress)
+            if s >= way.length:
+                event = ARRIVED
+                break
+            if policy.replan != "never":
+                event = STOPPED
+                break
             time = following  # it waits for the next change
         else:
             s += (following - time) * world.pace
             time = following
         times, progress = [*times, time], [*progress, s]
         if time >= world.end:
-            return ENDED, np.array(times), np.array(progress)
+            event = ENDED
+            break
+    return event, np.array(times), np.array(progress)
 
 
 def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
