@@ -39,7 +39,7 @@ class Job(ABC):
     code: list[str] = field(default_factory=list, kw_only=True)
 
     @abstractmethod
-    def run(self, input_files: Any, output_files: Any, threads: int) -> None:
+    def run(self, input_files: Any, output_files: Any) -> None:
         """Do the work with the files of a rule, by their names there."""
 
     @staticmethod
@@ -87,7 +87,7 @@ class Problems(Job):
         """Those of the kinds of workspace."""
         return modules_of(self.descriptions.workspaces)
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Build the problems, with the worlds of those that move."""
         from bezierplan.running import problems
 
@@ -101,7 +101,7 @@ class Bounds(Job):
     beat.
     """
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Compute the bounds."""
         from bezierplan.running import problems, rows
 
@@ -119,7 +119,7 @@ class Runs(Job):
         """The planner."""
         return [module_of(self.chunk.planner)]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Run the method, or let the robot drive."""
         import pyarrow.parquet as parquet
 
@@ -141,7 +141,7 @@ class Recheck(Job):
 
     chunks: list[Chunk]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the runs."""
         from bezierplan.running import recheck
 
@@ -171,7 +171,7 @@ class TableOfRuns(Job):
     """Whether runs with equal repeat numbers start alike."""
     repeats: int
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Make the table and its comparison."""
         import pandas as pd
 
@@ -215,7 +215,7 @@ class TableWithoutRuns(Job):
     spec: TableEntry
     """Without its title."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Make the table."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.numbers import listing
@@ -238,7 +238,7 @@ class Claims(Job):
         kinds = {check.test for claim in self.study.claims for check in claim.checks}
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the claims."""
         import pandas as pd
 
@@ -280,7 +280,7 @@ class Readings(Job):
         planners = [module_of(chunk.planner) for chunk in chunks]
         return [*self.code, *planners, *self.claims.modules()]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the readings."""
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import by_reading
@@ -318,7 +318,7 @@ class Audit(Job):
     reconstructed: list[str]
     """Those whose maps are."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Check the numbers."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.audit import audit
@@ -345,7 +345,7 @@ class BaselineTable(Job):
     with_baselines: bool = False
     """Whether baselines have rows too."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Measure the methods."""
         from bezierplan.analysis.numbers import baseline_comparison
         from bezierplan.running import inputs
@@ -366,7 +366,7 @@ class Summary(Job):
     tables: list[tuple[str, str]]
     """Study and table of each comparison with published numbers, in order."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Gather them."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.outcome import summary
@@ -388,7 +388,7 @@ class VerdictText(Job):
     study: str
     labels: dict[str, str]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Put the numbers into the sentences."""
         import pandas as pd
 
@@ -407,7 +407,7 @@ class Verification(Job):
     folder: str
     """That of the scale."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """List the files."""
         import json
 

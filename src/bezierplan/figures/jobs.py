@@ -28,7 +28,7 @@ class Latex(Job):
     heads: int = 0
     """How many columns name the rows of a table of the paper's form."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Set the table."""
         import pandas as pd
 
@@ -83,7 +83,7 @@ class FigureFiles(Job):
             *modules_of(self.workspaces | self.problems.workspaces),
         ]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Draw the figure from its data, which are first written and read back."""
         from bezierplan.analysis import results, study_code
         from bezierplan.figures import sheet
@@ -127,7 +127,7 @@ class Page(Job):
 
     page: PageJob
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Write the page."""
         from bezierplan.analysis import study_code
         from bezierplan.figures.page import build

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import blocks, from_origin, region
+from bezierplan.geometry import shortest_paths
+from bezierplan.geometry.region import blocks, region
 from bezierplan.running.simulation import ways
 from bezierplan.running.simulation.circles import ARRIVED, BLOCKED, DUE, ENDED, STOPPED
 from bezierplan.running.simulation.motion_check import Motion
@@ -87,10 +87,7 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 def free_length(grid: Grid, way: Way, s: float) -> float:
     """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
-    obstacles = region(grid)
-    collision_at, _ = checker.first_collision(
-        from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles
-    )
+    collision_at = ways.first_collision(points, region(grid))
     if math.isinf(collision_at):
         return math.inf
     lengths = s + ways.lengths(points)

@@ -63,11 +63,9 @@ class _Log:
     def motion(self) -> Motion:
         """The motion so far, with at least two vertices."""
         points, times = np.concatenate(self.points), np.concatenate(self.times)
-        return (
-            Motion(points, times)
-            if len(times) > 1
-            else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
-        )
+        if len(times) == 1:
+            points, times = np.repeat(points, 2, axis=0), np.repeat(times, 2)
+        return Motion(points, times)
 
     def follow(self, along: Way, times: np.ndarray, progress: np.ndarray, pace: float) -> None:
         """Add a drive along a way: the lengths of it reached at some times, between which the robot
