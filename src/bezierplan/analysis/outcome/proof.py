@@ -47,13 +47,13 @@ def unlisted(folder: Path) -> list[Difference]:
     return _changed(folder, listed, folder)
 
 
-def _changed(folder: Path, stored: dict[str, str], again: Path) -> list[Difference]:
+def _changed(folder: Path, digests: dict[str, str], again: Path) -> list[Difference]:
     """Files of a folder whose digests are not those of the files of the same name in another."""
-    found = {name: sha256(again / name) or "no file" for name in stored}
+    found = {name: sha256(again / name) or "no file" for name in digests}
     return [
-        Difference(str(folder / name), "all bytes", "SHA-256", stored[name], found[name])
-        for name in stored
-        if stored[name] != found[name]
+        Difference(str(folder / name), "all bytes", "SHA-256", digests[name], found[name])
+        for name in digests
+        if digests[name] != found[name]
     ]
 
 

@@ -42,14 +42,14 @@ Row = dict[str, Any]
 
 
 def chosen(
-    study: str, experiment: str, content: ExperimentView, stored: Files
+    study: str, experiment: str, content: ExperimentView, inputs: Files
 ) -> tuple[list[Row], Row]:
     """The runs of an experiment that the viewer shows: which of each method on each problem; and
     the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
     """
-    bounds = parquet.read_table(stored.bounds).to_pandas().set_index("problem")
+    bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
-    tables = {file: parquet.read_table(file, columns=columns) for file in stored.chunks}
+    tables = {file: parquet.read_table(file, columns=columns) for file in inputs.chunks}
     ranking = pd.concat(
         [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
     )
@@ -81,9 +81,9 @@ def chosen(
         for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
     rows = pd.concat(kept) if kept else ranking
-    made, moving = problem_files.read(stored.problems)
+    made, moving = problem_files.read(inputs.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
-    traces = _traces(stored.chunks if content.moves else [], list(by_name))
+    traces = _traces(inputs.chunks if content.moves else [], list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
         name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])

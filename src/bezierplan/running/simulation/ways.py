@@ -36,9 +36,11 @@ class Way(NamedTuple):
         return np.concatenate([self.place(begin)[None], inside, self.place(end)[None]])
 
 
-def places(points: np.ndarray, at: np.ndarray, wanted: np.ndarray | float) -> np.ndarray:
-    """Places (..., 2) of what is at points (n, 2) at values (n,), and moves straight in between."""
-    return np.stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)], axis=-1)
+def places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
+    """Places (..., 2), at some values, of what moves straight from point to point (n, 2).
+    at: (n,) the value at each point.
+    """
+    return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
 
 
 def way(points: np.ndarray) -> Way:
