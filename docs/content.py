@@ -53,10 +53,8 @@ def content() -> tuple[SimpleNamespace, Path]:
         studies = studies_of()
         whole = page_jobs.page(studies, scale)
         study_code.functions(whole.code)  # what a study's metrics mean
-        job = whole.page
-        shown = {key: own._replace(experiments={}) for key, own in job.studies.items()}
         page = build.page(
-            job._replace(studies=shown),
+            whole.page,
             folder,
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),

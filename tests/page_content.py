@@ -12,7 +12,6 @@ from bezierplan.analysis.numbers import wholes
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
     ArtefactView,
-    Citation,
     MethodView,
     PageJob,
     StudyView,
@@ -110,7 +109,7 @@ def job() -> PageJob:
     claims = ("C1", "C2", "C3")
     study = StudyView(
         title=HOSTILE,
-        paper=Citation(HOSTILE, "A journal, 2000", "10.1/x"),
+        paper=SimpleNamespace(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
         methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
         claims={

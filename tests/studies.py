@@ -60,7 +60,7 @@ def built(study: Study, experiment: str, name: str) -> Problem:
     alone = every.problems[name]
     home = alone["workspace"]
     described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
-    return problems.build_all(described, study.folder)[name]
+    return problems.build_all(described, study.folder)[0][name]
 
 
 def problem_of(key: str, name: str) -> Problem:

@@ -156,7 +156,7 @@ def test_lie_is_refused_by_run_and_field(lie):
 
 
 def test_names_that_are_taken_are_those_that_are_joined():
-    bounds = problems.bounds_of({"disc": DISC}).column_names
+    bounds = problems.bounds_of({"disc": DISC}, {}).column_names
     assert set(bounds) <= TAKEN
     assert {"cpu_s", "wall_s", "least_arrival", "replans_late"} <= TAKEN
 

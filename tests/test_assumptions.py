@@ -10,7 +10,6 @@ from studies import built, studies
 
 from bezierplan.geometry.region import region
 from bezierplan.running import execution
-from bezierplan.running.chunk import conditions
 from bezierplan.study.alternatives import concerned, with_alternative
 from bezierplan.study.jobs import job
 
@@ -31,7 +30,7 @@ def found(study, experiment, method, place=-1):
     problem = built(study, experiment, name)
     blocked = region(problem.workspace)
     rows = []
-    condition = next(conditions([name], described.vary))
+    condition = next(each for each in described.conditions() if each.problem == name)
     for repeat in range(REPEATS):
         plan = execution.run(described, condition, repeat, problem)
         row = execution.row(described, condition, repeat, plan, True, problem, blocked)

@@ -97,7 +97,7 @@ def chunks(tmp_path):
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
-    rows.write(problems.bounds_of(described), str(tmp_path / "bounds.parquet"))
+    rows.write(problems.bounds_of(described, {}), str(tmp_path / "bounds.parquet"))
     for method in ("mine", "other"):
         folder = tmp_path / "runs" / "first" / method
         folder.mkdir(parents=True)

@@ -34,7 +34,7 @@ def test_a_row_has_the_declared_columns_and_no_other():
     assert "layout" in PLACE
     assert rows.fault(runs.schema, *columns.TABLES["runs"].every) == ""
     assert rows.fault(times.schema, *columns.TABLES["times"].every) == ""
-    assert rows.fault(problems.bounds_of(BLOCKED).schema, *columns.TABLES["bounds"].every) == ""
+    assert rows.fault(problems.bounds_of(BLOCKED, {}).schema, *columns.TABLES["bounds"].every) == ""
 
 
 ROW = {"id": "a", "cpu_s": 1.0, "wall_s": 2.0}

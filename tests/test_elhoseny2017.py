@@ -194,7 +194,7 @@ def test_printed_lengths_over_the_bounds():
 def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     """Claim C19 compares both: evaluations on three fields for each number of obstacles."""
     own = study("elhoseny2017")
-    made = problems.build_all(problems_job(own, "fields100", "full"), own.folder)
+    made, _ = problems.build_all(problems_job(own, "fields100", "full"), own.folder)
     names = [
         f"{problem}_{layout}_{obstacles}"
         for layout in range(3)

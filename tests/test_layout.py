@@ -181,7 +181,8 @@ def facts(own, experiment, where):
         if plain.get("route") in (where.get("route"), None) or "route" not in where:
             yield from plain.items()
             described = descriptions(own, {"it": plain})
-            yield from of_workspace(problems.build_all(described, own.folder)["it"].workspace)
+            made, _ = problems.build_all(described, own.folder)
+            yield from of_workspace(made["it"].workspace)
         return
     if experiment is None:
         yield from of_workspace(files.load(own.workspaces[where["workspace"]].plain(), own.folder))

@@ -18,7 +18,7 @@ from bezierplan.figures.panels import drawing
 from bezierplan.geometry import shortest_paths
 from bezierplan.papers.meledje import audit as meledje
 from bezierplan.planners import Plan, node_genetic
-from bezierplan.running import execution, problems, worlds
+from bezierplan.running import execution, problems
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
@@ -92,7 +92,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
     described = Descriptions(
         "meledje", {name: STUDY.problems[name].plain()}, {name: STUDY.workspaces[name].plain()}
     )
-    made, moving = worlds.build_all(described, FOLDER)
+    made, moving = problems.build_all(described, FOLDER)
     ride = drive(moving[name], made[name], STUDY.policies["replans"], cell_path)
     moment = moving[name].moments[0]
     assert moment == pytest.approx(percent / 100 * ride.plans[0].length)
@@ -243,7 +243,7 @@ def test_faults_of_heights_are_told(text, tmp_path):
 
 def test_an_own_map_of_any_size_needs_configuration_alone():
     study = reading.load([YARD])["yard"]
-    made = problems.build_all(problems_job(study, "tries", "full"), study.folder)
+    made, _ = problems.build_all(problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
         runs, times = execution.run_chunk(made, job(study, "tries", method, "full", 0))
         table = runs.to_pandas()

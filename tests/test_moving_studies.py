@@ -13,7 +13,7 @@ from bezierplan.analysis import metrics, results
 from bezierplan.analysis.run_tables import equal
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
-from bezierplan.running import execution, problems, rides, worlds
+from bezierplan.running import execution, problems, rides
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.schema.checked import Fault
@@ -96,7 +96,7 @@ def written(folder, old="", new=""):
 
 
 def chunk(study):
-    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    made, found = problems.build_all(problems_job(study, "drives", "smoke"), study.folder)
     return execution.run_chunk(made, job(study, "drives", "mine", "smoke", 0), found)
 
 
@@ -110,7 +110,7 @@ def driven(tmp_path_factory):
 @pytest.fixture(scope="module")
 def room(driven):
     """The problem of the drives, and its world."""
-    made, found = worlds.build_all(problems_job(driven[0], "drives", "smoke"), driven[0].folder)
+    made, found = problems.build_all(problems_job(driven[0], "drives", "smoke"), driven[0].folder)
     return made["across"], found["across"]
 
 
@@ -180,12 +180,13 @@ def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
 def test_files_of_problems_keep_the_world(driven, tmp_path):
     study, _ = driven
     described = problems_job(study, "drives", "smoke")
-    made, found = worlds.build_all(described, study.folder)
+    made, found = problems.build_all(described, study.folder)
     file = str(tmp_path / "drives.parquet")
     problems.write(made, described.homes, file, found)
-    assert worlds.read(file)["across"].workspace(3).occupied[2, 3]
-    assert not problems.read(file)["across"].workspace.occupied[2, 3]
-    bounds = worlds.bounds_of(made, found).to_pylist()[0]
+    before, moving = problems.read(file)
+    assert moving["across"].workspace(3).occupied[2, 3]
+    assert not before["across"].workspace.occupied[2, 3]
+    bounds = problems.bounds_of(made, found).to_pylist()[0]
     assert bounds["bound"] == 6.0
     later = made["across"]._replace(workspace=found["across"].maps[1])
     assert bounds["least_arrival"] == shortest_paths.shortest_path(later).length > 6.0

@@ -25,6 +25,7 @@ from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
+from bezierplan.running.inputs import Files
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path as Curve
 from bezierplan.workspaces.problem import Problem
@@ -229,7 +230,7 @@ def stored(folder, lengths, feasible, **more):
         "room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5)
     )
     problem_files.write({"room": room}, {"room": "room"}, str(folder / "p.parquet"))
-    row_files.write(problem_files.bounds_of({"room": room}), str(folder / "p.bounds.parquet"))
+    row_files.write(problem_files.bounds_of({"room": room}, {}), str(folder / "p.bounds.parquet"))
     row = {"problem": "room", "method": "m", "claimed_feasible": True, "collision_depth": 0.0}
     row |= {"clearance": 0.1, "evaluations": 5, "stop": "generations", "path_curve": "polyline"}
     row |= {"history": [5.0, 5.0, 4.0, 4.0], "path_points": [0.5, 0.5, 3.5, 0.5]}
@@ -242,12 +243,12 @@ def stored(folder, lengths, feasible, **more):
     ]
     parquet.write_table(pa.Table.from_pylist(rows), folder / "0.parquet")
     files = (str(folder / name) for name in ("p.parquet", "p.bounds.parquet"))
-    return ExperimentView(["m"], len(rows), [str(folder / "0.parquet")], *files, traces=[])
+    return Files({"m": [str(folder / "0.parquet")]}, *files)
 
 
 def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
-    described = stored(tmp_path, [5.0, 3.5, 4.0, 9.0, 8.0, 7.0, 6.0], [True] * 4 + [False] * 3)
-    (shown,), found = runs.chosen("s", "e", described)
+    files = stored(tmp_path, [5.0, 3.5, 4.0, 9.0, 8.0, 7.0, 6.0], [True] * 4 + [False] * 3)
+    (shown,), found = runs.chosen("s", "e", ExperimentView(["m"], 7, False), files)
     assert (shown["count"], shown["feasible"]) == (7, 4)
     assert [shown["best"], shown["median"], shown["worst"], *shown["failed"]] == [
         f"s/e/room/m/{n}" for n in (1, 2, 3, 4, 5)
@@ -258,7 +259,7 @@ def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
     assert found["runs"]["s/e/room/m/1"]["history"] == [(0, 5.0), (2, 4.0), (3, 4.0)]
     assert found["problems"]["s/e/room"]["bound"] == 3.0
     # Repeats that a chunk has beyond those of the scale are not shown.
-    (shown,), _ = runs.chosen("s", "e", described._replace(repeats=1))
+    (shown,), _ = runs.chosen("s", "e", ExperimentView(["m"], 1, False), files)
     assert (shown["best"], shown["count"]) == ("s/e/room/m/0", 1)
 
 
@@ -272,16 +273,15 @@ def test_place_of_a_drive_is_found_where_its_way_crosses_itself():
 
 
 def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
-    described = stored(tmp_path, [3.0], [False], collision_at=1.5, steps=2.5)
+    files = stored(tmp_path, [3.0], [False], collision_at=1.5, steps=2.5)
     empty = from_lines(["....", "....", "...."], cell=1.0, unit="m")
     later = from_lines(["#...", "....", "...#"], cell=1.0, unit="m")
     room = {"room": Problem("room", empty, (0.5, 0.5), (3.5, 0.5))}
     world = ChangingCells((empty, later), np.array([2.0]), 1.0, 9)
-    problem_files.write(room, {"room": "room"}, described.problems, {"room": world})
+    problem_files.write(room, {"room": "room"}, files.problems, {"room": world})
     trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
     parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
-    described = described._replace(traces=[str(tmp_path / "0.traces.parquet")])
-    _, found = runs.chosen("s", "e", described)
+    _, found = runs.chosen("s", "e", ExperimentView(["m"], 1, True), files)
     (drive,) = found["runs"].values()
     assert (drive["steps"], drive["driven"], drive["control"]) == (2.5, [0, 1, 2, 3], [])
     assert (drive["collision"], drive["collision_step"]) == ([2.0, 0.5], 1.5)

@@ -45,7 +45,7 @@ def built(count, obstacles=60, **changes):
         for layout in range(count)
     }
     job = Descriptions("study", described, {"blocks": MAP | changes})
-    return [problem.workspace.occupied for problem in problems.build_all(job, None).values()]
+    return [problem.workspace.occupied for problem in problems.build_all(job, None)[0].values()]
 
 
 def test_maps_are_drawn_from_names_and_numbers_alone():

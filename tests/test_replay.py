@@ -19,7 +19,7 @@ STUDIES = {"song2016": study("song2016")}
 def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
     study = STUDIES["song2016"]
     described = job(study, "routes", "straight_line", "smoke", 0)
-    made = problems.build_all(problems_job(study, "routes", "smoke"), study.folder)
+    made, _ = problems.build_all(problems_job(study, "routes", "smoke"), study.folder)
     runs, _ = execution.run_chunk(made, described)
     for row in runs.to_pylist():
         assert equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)

@@ -64,7 +64,7 @@ def surface(found: results.Results) -> pd.DataFrame:
 @pytest.fixture(scope="module")
 def found() -> results.Results:
     table, _ = execution.run_chunk({"field": FIELD}, CHUNK)
-    bounds = problems.bounds_of({"field": FIELD}).to_pandas()
+    bounds = problems.bounds_of({"field": FIELD}, {}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
     return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(

@@ -391,8 +391,9 @@ def each(request, tasks):
 def test_runs_and_drives_are_sound_and_can_be_made_again(each):
     verdict = recheck.verify([each], 1, print)
     assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
-    assert recheck.made_again([each], 1, verdict.digest, every=True) == (4, [])
-    assert recheck.made_again([each], 1, verdict.digest, every=False) == (1, []), "the first"
+    for every, number in ((True, 4), (False, 1)):
+        again = recheck.made_again([each], 1, verdict.digest, every)
+        assert again == recheck.RunsVerdict(runs=number), "all, or the first"
 
 
 EDITS: dict[tuple[str, str, str], Callable] = {
@@ -457,7 +458,7 @@ def test_what_no_path_tells_shows_when_a_run_is_made_again(tasks, tmp_path, name
     task, copy = on_a_copy(tasks[name], tmp_path)
     edited(copy, column, change)
     assert not recheck.judged(task).faults
-    _, faults = recheck.made_again([task], 1, "", every=True)
+    faults = recheck.made_again([task], 1, "", every=True).faults
     assert {fault.column for fault in faults} == {column}
 
 

@@ -389,7 +389,7 @@ def test_problems_in_random_circles_have_free_ends():
         {f"p{number}": described | {"layout": number} for number in range(20)},
         {"close": RANDOM | {"kind": "random_circles", "radius": 5.0}},
     )
-    drawn = problems.build_all(job, Path())
+    drawn, _ = problems.build_all(job, Path())
     assert len(drawn) == 20
     for problem in drawn.values():
         assert len(problem.workspace.radii) == 10

@@ -613,7 +613,8 @@ def problems(experiment: str) -> dict[str, Problem]:
     key, _, name = experiment.partition("/")
     check_known(key, _keys(), "experiment: study")
     check_known(name, _study(key).experiments, "experiment")
-    return problem_files.build_all(problems_job(_study(key), name, "full"), _study(key).folder)
+    described = problems_job(_study(key), name, "full")
+    return problem_files.build_all(described, _study(key).folder)[0]
 
 
 def results(folder: str | File, experiment: str) -> pd.DataFrame:

@@ -100,7 +100,8 @@ Attempts = Iterator[tuple[float, Path | None]]
 
 def arena(contest: Contest) -> Arena:
     study = frame.study(contest.study)
-    built = problems.build_all(jobs.problems_job(study, contest.experiment, "full"), study.folder)
+    described = jobs.problems_job(study, contest.experiment, "full")
+    built, _ = problems.build_all(described, study.folder)
     problem = built[contest.problem]
     bound = shortest_paths.shortest_path(problem).length
     return Arena(contest, study, problem, region(problem.workspace), bound)

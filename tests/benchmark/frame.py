@@ -10,7 +10,7 @@ import numpy as np
 
 from bezierplan.places import STUDIES
 from bezierplan.planners import Plan, planner_module
-from bezierplan.running import execution, worlds
+from bezierplan.running import execution, problems
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
 from bezierplan.workspaces.problem import Problem
@@ -89,7 +89,7 @@ def first_runs() -> Iterator[tuple[str, Problem, Work]]:
     first = {place[0].planner(place[2]): place for place in reversed(places)}
     for planner, (own, experiment, method) in first.items():
         job = jobs.job(own, experiment, method, "smoke", 0)
-        built, _ = worlds.build_all(jobs.problems_job(own, experiment, "smoke"), own.folder)
+        built, _ = problems.build_all(jobs.problems_job(own, experiment, "smoke"), own.folder)
         condition = job.conditions()[0]
         problem, settings = built[condition.problem], execution.settings_in(job, condition)
         plan = planner_module(planner).plan

@@ -75,7 +75,7 @@ def _run(job: Any, study: str, *outputs: str) -> None:
         verified=SMOKE / "verified.json",
     )
     with tempfile.TemporaryDirectory() as folder:
-        job.run(given, SimpleNamespace(**{name: f"{folder}/{name}" for name in outputs}), 1)
+        job.run(given, SimpleNamespace(**{name: f"{folder}/{name}" for name in outputs}))
 
 
 # --------------------------------------------------------------------------------------------------

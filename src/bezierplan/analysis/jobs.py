@@ -39,7 +39,7 @@ class Job(ABC):
     code: list[str] = field(default_factory=list, kw_only=True)
 
     @abstractmethod
-    def run(self, input_files: Any, output_files: Any, threads: int) -> None:
+    def run(self, input_files: Any, output_files: Any) -> None:
         """Do the work with the files of a rule, by their names there."""
 
     @staticmethod
@@ -87,11 +87,11 @@ class Problems(Job):
         """Those of the kinds of workspace."""
         return modules_of(self.descriptions.workspaces)
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Build the problems, with the worlds of those that move."""
-        from bezierplan.running import problems, worlds
+        from bezierplan.running import problems
 
-        built, moving = worlds.build_all(self.descriptions, Path(self.folder))
+        built, moving = problems.build_all(self.descriptions, Path(self.folder))
         problems.write(built, self.descriptions.homes, output_files[0], moving)
 
 
@@ -101,12 +101,12 @@ class Bounds(Job):
     beat.
     """
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Compute the bounds."""
-        from bezierplan.running import problems, rows, worlds
+        from bezierplan.running import problems, rows
 
-        file = input_files.problems
-        rows.write(worlds.bounds_of(problems.read(file), worlds.read(file)), output_files[0])
+        table = problems.bounds_of(*problems.read(input_files.problems))
+        rows.write(table, output_files[0])
 
 
 @dataclass(frozen=True)
@@ -119,14 +119,14 @@ class Runs(Job):
         """The planner."""
         return [module_of(self.chunk.planner)]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Run the method, or let the robot drive."""
         import pyarrow.parquet as parquet
 
-        from bezierplan.running import execution, problems, rows, worlds
+        from bezierplan.running import execution, problems, rows
 
-        file = input_files.problems
-        tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
+        built, moving = problems.read(input_files.problems)
+        tables = execution.run_chunk(built, self.chunk, moving)
         rows.write(tables[0], output_files.runs, self.digest)
         parquet.write_table(tables[1], output_files.times)
         for traces in tables[2:]:
@@ -141,7 +141,7 @@ class Recheck(Job):
 
     chunks: list[Chunk]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the runs."""
         from bezierplan.running import recheck
 
@@ -171,7 +171,7 @@ class TableOfRuns(Job):
     """Whether runs with equal repeat numbers start alike."""
     repeats: int
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Make the table and its comparison."""
         import pandas as pd
 
@@ -215,7 +215,7 @@ class TableWithoutRuns(Job):
     spec: TableEntry
     """Without its title."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Make the table."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.numbers import listing
@@ -238,7 +238,7 @@ class Claims(Job):
         kinds = {check.test for claim in self.study.claims for check in claim.checks}
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the claims."""
         import pandas as pd
 
@@ -280,7 +280,7 @@ class Readings(Job):
         planners = [module_of(chunk.planner) for chunk in chunks]
         return [*self.code, *planners, *self.claims.modules()]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Judge the readings."""
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import by_reading
@@ -318,7 +318,7 @@ class Audit(Job):
     reconstructed: list[str]
     """Those whose maps are."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Check the numbers."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.audit import audit
@@ -345,7 +345,7 @@ class BaselineTable(Job):
     with_baselines: bool = False
     """Whether baselines have rows too."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Measure the methods."""
         from bezierplan.analysis.numbers import baseline_comparison
         from bezierplan.running import inputs
@@ -366,7 +366,7 @@ class Summary(Job):
     tables: list[tuple[str, str]]
     """Study and table of each comparison with published numbers, in order."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Gather them."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.outcome import summary
@@ -388,7 +388,7 @@ class VerdictText(Job):
     study: str
     labels: dict[str, str]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Put the numbers into the sentences."""
         import pandas as pd
 
@@ -407,7 +407,7 @@ class Verification(Job):
     folder: str
     """That of the scale."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """List the files."""
         import json
 

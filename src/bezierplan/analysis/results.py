@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.running import answer, worlds
+from bezierplan.running import answer
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running.chunk import Chunk, chunk_files
@@ -52,8 +52,8 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
     for file, rows in ((files.problems, known), (files.bounds, bounded)):
         if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
             raise row_files.misplaced(file, "not of the problems that the runs are of")
-    results = joined(table, problem_files.read(files.problems), bounded)
-    return results._replace(worlds=worlds.read(files.problems))
+    problems, moving = problem_files.read(files.problems)
+    return joined(table, problems, bounded)._replace(worlds=moving)
 
 
 def of_folder(folder: FilePath, experiment: str) -> Results:

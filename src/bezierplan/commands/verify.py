@@ -2,10 +2,14 @@
 
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any, NoReturn
 
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import config_of, cores, studies_of, study_named
+from bezierplan.running import recheck
+from bezierplan.study import stored
 
 
 def main(
@@ -39,37 +43,22 @@ def main(
     """
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
-    lines, sound = from_runs(folder, studies, cores, all_)
-    print("\n".join(map(str, lines)))
-    if not sound:
-        sys.exit(1)
-
-
-def from_runs(
-    folder: Path, names: Sequence[str], processes: int, every: bool
-) -> tuple[list[str], bool]:
-    """What is to be said of results that are made again, and whether they are sound."""
-    from bezierplan.running import recheck
-    from bezierplan.study import stored
-
-    def progress(line: str) -> None:
-        print(line, file=sys.stderr, flush=True)
-
+    progress = partial(print, file=sys.stderr, flush=True)
     config = config_of()
-    places = stored.places_of(folder, config, map(study_named, names))
-    studies = studies_of([*places.values()]) if places else {}
-    tasks, left = stored.tasks(studies, folder), stored.of_nothing(studies, folder)
+    places = stored.places_of(folder, config, map(study_named, studies))
+    loaded = studies_of([*places.values()]) if places else {}
+    tasks, left = stored.tasks(loaded, folder), stored.of_nothing(loaded, folder)
     faults = proof.unlisted(folder)
     missing = [fault for fault in faults if not Path(fault.file).is_file()]
     if missing:
-        return [*map(str, missing), f"{len(missing)} files are missing"], False
+        _fail(*missing, f"{len(missing)} files are missing")
     try:
-        verdict = recheck.verify(tasks, processes, progress)
+        verdict = recheck.verify(tasks, cores, progress)
     except ValueError as fault:
         # What cannot be read may have been told already.
         if not faults:
             raise
-        return [*map(str, faults), str(fault)], False
+        _fail(*faults, fault)
     faults += verdict.faults
     lines = [f"{file}: of no table, figure or runs; delete it" for file in left]
     lines += [
@@ -77,14 +66,23 @@ def from_runs(
         "again"
     ]
     if not faults:
-        runs, faults = recheck.made_again(tasks, processes, verdict.digest, every)
-        progress(f"{runs} runs made again, {len(faults)} faults")
-        lines.append(f"{runs} runs made again")
+        again = recheck.made_again(tasks, cores, verdict.digest, all_)
+        faults = again.faults
+        progress(f"{again.runs} runs made again, {len(faults)} faults")
+        lines.append(f"{again.runs} runs made again")
     if not faults:
-        files, faults = proof.differing(folder, left, config, places, processes)
+        files, faults = proof.differing(folder, left, config, places, cores)
         lines.append(f"{files} files made again")
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
     lines.append(f"digest {verdict.digest}; {', '.join(versions)}")
     but = f" but for {len(left)} files that nothing makes" if left else ""
     lines.append(f"{len(faults)} values differ" if faults else f"sound{but}")
-    return [*map(str, faults), *lines], not (faults or left)
+    if faults or left:
+        _fail(*faults, *lines)
+    print(*lines, sep="\n")
+
+
+def _fail(*lines: Any) -> NoReturn:
+    """End with status 1: something differs."""
+    print(*lines, sep="\n")
+    sys.exit(1)

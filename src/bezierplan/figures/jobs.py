@@ -8,7 +8,7 @@ from typing import Any
 
 from bezierplan.analysis.jobs import Job
 from bezierplan.figures.layout import Layout
-from bezierplan.figures.page.page_job import ExperimentView, PageJob
+from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
 from bezierplan.running.chunk import Chunk
@@ -28,7 +28,7 @@ class Latex(Job):
     heads: int = 0
     """How many columns name the rows of a table of the paper's form."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Set the table."""
         import pandas as pd
 
@@ -83,12 +83,13 @@ class FigureFiles(Job):
             *modules_of(self.workspaces | self.problems.workspaces),
         ]
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Draw the figure from its data, which are first written and read back."""
         from bezierplan.analysis import results, study_code
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
-        from bezierplan.running import inputs, worlds
+        from bezierplan.running import inputs
+        from bezierplan.running import problems as problem_files
         from bezierplan.workspaces import files as workspace_files
 
         published = results.published_tables(input_files.sources)
@@ -102,7 +103,7 @@ class FigureFiles(Job):
             name: workspace_files.load(described, Path(self.folder))
             for name, described in self.workspaces.items()
         }
-        places, _ = worlds.build_all(self.problems, Path(self.folder))
+        places, _ = problem_files.build_all(self.problems, Path(self.folder))
         problems = {name: runs.problems for name, runs in experiments.items()}
         drawings = study_code.part_of(
             [name for name in self.code if study_code.part(name) == "panels"]
@@ -125,32 +126,20 @@ class Page(Job):
     """The page of a scale."""
 
     page: PageJob
-    moving: list[str]
-    """The experiments, each by study/experiment, whose runs are drives."""
 
-    def run(self, input_files, output_files, threads):
+    def run(self, input_files, output_files):
         """Write the page."""
         from bezierplan.analysis import study_code
         from bezierplan.figures.page import build
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        experiments: dict[str, dict[str, ExperimentView]] = {key: {} for key in self.page.studies}
-        for place, files in inputs.experiments(self.shows, input_files).items():
-            key, _, name = place.partition("/")
-            methods, repeats = self.page.studies[key].experiments[name]
-            traces = [
-                str(Path(chunk).with_suffix(".traces.parquet"))
-                for chunk in files.chunks
-                if place in self.moving
-            ]
-            experiments[key][name] = ExperimentView(
-                methods, repeats, files.chunks, files.problems, files.bounds, traces
-            )
-        studies = {
-            key: own._replace(experiments=experiments[key])
-            for key, own in self.page.studies.items()
-        }
-        job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
-        page = build.page(job, folder, list(input_files.summary), input_files.verified)
+        folder = Path(input_files.verified).parent
+        page = build.page(
+            self.page,
+            folder,
+            list(input_files.summary),
+            input_files.verified,
+            results=inputs.experiments(self.shows, input_files),
+        )
         Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")

@@ -143,16 +143,12 @@ def _imports(module: _Module) -> set[_Module]:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
-            modules.add(
-                _Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full)
-            )
-    # Modules next to this package are not part of it.
-    ours = {
-        each
-        for each in modules
-        if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()
-    }
-    return ours.union(*(each.parents() for each in ours))
+            ours = full.split(".")[0] == ROOT
+            # Modules next to this package are not part of it.
+            if ours or module.home != PACKAGE.parent:
+                modules.add(_Module(PACKAGE.parent if ours else module.home, full))
+    found = {each for each in modules if each.file()}
+    return found.union(*(each.parents() for each in found))
 
 
 def source_digest(*modules: str) -> str:

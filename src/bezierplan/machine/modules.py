@@ -57,13 +57,11 @@ def code_of(study: str, folder: str) -> dict[str, str]:
     for a paper of this project modules of `bezierplan.papers`.
     """
     ours = PACKAGE / "papers" / study
-    places = {f"{part}.py": part for part in PARTS}
     if ours.is_dir():
         dotted = f"{PACKAGE.name}.papers.{study}"
-        return {part: f"{dotted}.{part}" for name, part in places.items() if (ours / name).exists()}
-    return {
-        part: f"{folder}/{name}" for name, part in places.items() if Path(folder, name).exists()
-    }
+        return {part: f"{dotted}.{part}" for part in PARTS if (ours / f"{part}.py").exists()}
+    files = {part: f"{folder}/{part}.py" for part in PARTS}
+    return {part: file for part, file in files.items() if Path(file).exists()}
 
 
 @cache

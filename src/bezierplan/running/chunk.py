@@ -1,7 +1,6 @@
 """What a job of runs is made from."""
 
 import itertools
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,13 +14,6 @@ class Condition(NamedTuple):
     @property
     def name(self) -> str:
         return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
-
-
-def conditions(problems: list[str], vary: dict[str, list]) -> Iterator[Condition]:
-    """Every combination of problems and varied values, in the order given."""
-    for problem in problems:
-        for values in itertools.product(*vary.values()):
-            yield Condition(problem, dict(zip(vary, values, strict=True)))
 
 
 class Chunk(NamedTuple):
@@ -54,8 +46,12 @@ class Chunk(NamedTuple):
     """What the robot does, where the world moves."""
 
     def conditions(self) -> list[Condition]:
-        """Its conditions, in order."""
-        return list(conditions(list(self.problems), self.vary))
+        """Every combination of problems and varied values, in the order given."""
+        return [
+            Condition(problem, dict(zip(self.vary, values, strict=True)))
+            for problem in self.problems
+            for values in itertools.product(*self.vary.values())
+        ]
 
     @property
     def runs(self) -> int:

@@ -104,7 +104,7 @@ JOINED = {name: kind for name, kind in _types(Bound, Times).items() if name not 
 """Columns joined to a runs table when it is read: those of `problems.bounds_of`, and the times."""
 
 DRIVE_JOINED = _types(DriveBound, DriveTimes)
-"""Columns that are joined to the table of drives: of `worlds.bounds_of`, and the times of plans."""
+"""Columns that are joined to the table of drives: likewise, and the times of plans."""
 
 WORDS = ("value", "statistic", "metric", "n", "unit", "table")
 """Columns of tables of results, beside those of the runs table that tell their rows apart."""

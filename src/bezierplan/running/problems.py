@@ -1,23 +1,27 @@
-"""The problems of an experiment: built from their descriptions, and kept in a file with one row per
-problem.
+"""The problems of an experiment, and the worlds of those that move: built from their descriptions,
+and kept in a file with one row per problem. The workspace of a problem that moves is what planners
+see at the beginning.
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y
 (units), drawn (the workspace itself, as JSON: `workspaces.files.to_json`); where it moves, world
-(as JSON: `workspaces.worlds`). Columns of a file of bounds: `columns.Bound`.
+(as JSON: `workspaces.worlds`). Columns of a file of bounds: `columns.Bound`, of drives
+`columns.DriveBound` too.
 """
 
 import math
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.geometry import cell_length
+from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
-from bezierplan.running.columns import Bound
+from bezierplan.running.columns import Bound, DriveBound
 from bezierplan.running.descriptions import Descriptions
+from bezierplan.running.simulation import bounds
 from bezierplan.workspaces import files, robot, worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
@@ -26,8 +30,6 @@ from bezierplan.workspaces.worlds import World
 
 if TYPE_CHECKING:
     import pyarrow as pa
-
-    from bezierplan.geometry import shortest_paths
 
 
 def placed(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
@@ -90,8 +92,12 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
     return point
 
 
-def build_all(descriptions: Descriptions, folder: Path) -> dict[str, Problem]:
-    """Problems by name, from their descriptions.
+def build_all(
+    descriptions: Descriptions, folder: Path
+) -> tuple[dict[str, Problem], dict[str, World]]:
+    """Problems, and the worlds of those that move, by the problem's name, from their descriptions.
+    What is random is drawn from the name of study and workspace and from the problem's numbers
+    alone.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
@@ -103,13 +109,24 @@ def build_all(descriptions: Descriptions, folder: Path) -> dict[str, Problem]:
         for name, each in descriptions.workspaces.items()
         if hasattr(kinds[name], "load")
     }
-    problems = {}
-    for name, description in descriptions.problems.items():
-        home = description["workspace"]
-        arguments = descriptions.workspaces[home], description, f"{descriptions.study}/{home}"
-        workspace = fixed[home] if home in fixed else kinds[home].draw(*arguments)
-        problems[name] = build(name, description, workspace)
-    return problems
+    problems, moving = {}, {}
+    for name, problem in descriptions.problems.items():
+        home = problem["workspace"]
+        arguments = descriptions.workspaces[home], problem, f"{descriptions.study}/{home}"
+        if home in fixed:
+            workspace = fixed[home]
+        elif hasattr(kinds[home], "draw"):
+            workspace = kinds[home].draw(*arguments)
+        else:
+            moving[name] = kinds[home].world(*arguments, folder, partial(_steps, problem))
+            workspace = moving[name].workspace(0)
+        problems[name] = build(name, problem, workspace)
+    return problems, moving
+
+
+def _steps(problem: dict, grid: Grid) -> float:
+    """The length of the shortest path from cell to cell between a problem's ends."""
+    return shortest_paths.centre_path(build("first", problem, grid)).length
 
 
 def write(
@@ -140,13 +157,15 @@ def write(
     parquet.write_table(pa.Table.from_pylist(rows), file)
 
 
-def read(file: str) -> dict[str, Problem]:
-    """The problems of a file, by name, in file order; those in one workspace share its object."""
+def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+    """The problems of a file, by name, in file order; those in one workspace share its object. And
+    the worlds of those that move.
+    """
     from bezierplan.running import rows
 
     table = rows.read(file, threads=False).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
-    return {
+    problems = {
         row["problem"]: Problem(
             row["problem"],
             drawn[row["drawn"]],
@@ -155,45 +174,38 @@ def read(file: str) -> dict[str, Problem]:
         )
         for row in table
     }
+    moving = {row["problem"]: worlds.from_json(row["world"]) for row in table if "world" in row}
+    return problems, moving
 
 
-def bounds_of(problems: dict[str, Problem]) -> "pa.Table":
-    """The straight line and the exact shortest path of each problem, one row each."""
-    from bezierplan.geometry import shortest_paths
+def bounds_of(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Table":
+    """The straight line and the exact shortest path of each problem, one row each; where it moves,
+    what no robot can beat, without an octile bound.
+    """
     from bezierplan.running import rows
 
-    bounds = [
-        bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem))
-        for name, problem in problems.items()
-    ]
-    return rows.table(bounds, Bound)
-
-
-def bound_row(
-    name: str, problem: Problem, bound: "shortest_paths.Bound", octile_bound: float
-) -> dict[str, Any]:
-    """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN
-    where there is none.
-    """
-    from bezierplan.geometry import shortest_paths
-
-    row = Bound(
-        problem=name,
-        straight_line=math.dist(problem.start, problem.target),
-        bound=bound.length,
-        least_length=shortest_paths.least_length(bound),
-        bound_path=bound.points.ravel().tolist(),
-        octile_bound=octile_bound,
-    )
-    return row._asdict()
+    made = []
+    for name, problem in problems.items():
+        world = moving.get(name)
+        least = bounds.least_way(world, problem) if world else shortest_paths.shortest_path(problem)
+        row = Bound(
+            problem=name,
+            straight_line=math.dist(problem.start, problem.target),
+            bound=least.length,
+            least_length=shortest_paths.least_length(least),
+            bound_path=least.points.ravel().tolist(),
+            octile_bound=math.nan if world else _cell_bound(problem),
+        )._asdict()
+        if world:
+            row |= DriveBound(bounds.least_arrival(world, problem))._asdict()
+        made.append(row)
+    return rows.table(made, Bound, *([DriveBound] if moving else []))
 
 
 def _cell_bound(problem: Problem) -> float:
     """The least length, in units, of a path over free cells with straight and diagonal steps, which
     may pass between two occupied cells.
     """
-    from bezierplan.geometry import shortest_paths
-
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return math.nan

@@ -14,6 +14,7 @@ import multiprocessing
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path as File
 from typing import Any, NamedTuple
 
@@ -22,7 +23,7 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.running import answer, execution, problems, rows, worlds
+from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.jobs.watchdog import end_with_parent
@@ -141,7 +142,7 @@ def versions() -> dict[str, str]:
 
 def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     try:
-        return problems.read(file), worlds.read(file)
+        return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
         raise rows.misplaced(file, "not a whole file of problems") from None
 
@@ -163,12 +164,12 @@ def judged(task: StoredRuns) -> RunsVerdict:
         elif fault := rows.fault(table.schema, *declared):
             raise rows.misplaced(file, fault)
         else:
-            files[file] = table.to_pylist()
-            of_file = [*_identity_faults(file, files[file], chunk)]
+            entries = table.to_pylist()
+            of_file = [*_identity_faults(file, entries, chunk)]
             if not of_file and (today := task.jobs.get(file, job)) != job:
                 of_file = [Difference(file, "all rows", "code and libraries", job or "none", today)]
-        if of_file:
-            files.pop(file, None)
+            if not of_file:
+                files[file] = entries
         faults += of_file
     known: dict[tuple, dict[str, tuple[Any, float]]] = {}
     for file, stored in files.items():
@@ -275,25 +276,18 @@ def _drive_judged(
 # Runs made again
 
 
-def made_again(
-    tasks: list[StoredRuns], processes: int, digest: str, every: bool
-) -> tuple[int, list[Difference]]:
+def made_again(tasks: list[StoredRuns], processes: int, digest: str, every: bool) -> RunsVerdict:
     """How many runs were made again, and what of them differs from their rows in any bit: the
     first of each file and one in `MADE_AGAIN`, which a digest chooses, or all.
     """
-    share = 1 if every else MADE_AGAIN
-    chunks = [
-        (task.problems, file, chunk, digest, share)
-        for task in tasks
-        for file, chunk in task.runs.items()
-    ]
-    found = [*_mapped(_again, chunks, processes)]
-    return sum(number for number, _ in found), [fault for _, faults in found for fault in faults]
+    again = partial(_again, digest=digest, share=1 if every else MADE_AGAIN)
+    files = [(task.problems, *each) for task in tasks for each in task.runs.items()]
+    return merged(_mapped(again, files, processes))
 
 
-def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Difference]]:
+def _again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
     """`made_again` of a file."""
-    problem_file, file, chunk, digest, share = entry
+    problem_file, file, chunk = of
     runs = _runs(chunk)
     numbers = [
         n
@@ -311,4 +305,4 @@ def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Differenc
             # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
             if repr(value) != repr(stored.get(name)):
                 faults.append(Difference(file, row["id"], name, stored.get(name), value))
-    return len(numbers), faults
+    return RunsVerdict(tuple(faults), runs=len(numbers))

@@ -89,9 +89,8 @@ def judged(
 
 def driven(ride: Ride) -> Path:
     """The path of a drive, without its waits."""
-    points = ride.motion.points
-    moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
-    return Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
+    points = ways.way(ride.motion.points).points
+    return Path("polyline", points if len(points) > 1 else np.repeat(points, 2, axis=0))
 
 
 def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:

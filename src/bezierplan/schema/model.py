@@ -278,15 +278,17 @@ def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
     distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_distinct)]
     if not single:
         return distinct
-    several, lone = TypeAdapter(distinct), TypeAdapter(item)
-    return Annotated[
-        list[item],
-        PlainValidator(
-            lambda entry: (several if isinstance(entry, list) else lone).validate_python(
-                entry, strict=True
-            )
-        ),
-    ]
+    return Annotated[list[item], _either(list, distinct, item)]
+
+
+def _either(kind: type, of_kind: Any, other: Any) -> PlainValidator:
+    """A type of value that is of one type if it is a list, or a mapping, and of another if not."""
+    as_kind, as_other = TypeAdapter(of_kind), TypeAdapter(other)
+    return PlainValidator(
+        lambda entry: (as_kind if isinstance(entry, kind) else as_other).validate_python(
+            entry, strict=True
+        )
+    )
 
 
 def _distinct(entry: list) -> list:
@@ -319,12 +321,7 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
 
 def mapping_or(mapping: Any, other: Any) -> PlainValidator:
     """A type of value that is either a mapping of one type, or of another type."""
-    as_mapping, as_other = TypeAdapter(mapping), TypeAdapter(other)
-    return PlainValidator(
-        lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(
-            entry, strict=True
-        )
-    )
+    return _either(dict, mapping, other)
 
 
 # Names defined elsewhere.

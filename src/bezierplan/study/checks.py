@@ -22,8 +22,7 @@ from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
 from bezierplan.places import relative
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
-from bezierplan.running import columns, worlds
-from bezierplan.running.chunk import conditions
+from bezierplan.running import columns, problems
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
@@ -235,7 +234,7 @@ class Checks:
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
         described = descriptions(study, {name: problem.plain("layouts") | drawn})
-        return worlds.build_all(described, study.folder)[0][name]
+        return problems.build_all(described, study.folder)[0][name]
 
     def experiment(self, name: str, experiment: Experiment) -> None:
         """Its problems and methods suit each other, and what it varies exists."""
@@ -287,10 +286,10 @@ class Checks:
         described = job(study, name, method, "full", 0)
         # One problem for each distinct set of problem settings.
         apart = {
-            str(met.get("settings")): problem
+            str(met.get("settings")): (problem, met)
             for problem, met in reversed(described.problems.items())
         }
-        for condition in conditions(list(apart.values()), experiment.vary):
+        for condition in described._replace(problems=dict(apart.values())).conditions():
             varied = f"vary: {condition.name}: {method}" if condition.values else where
             interface.check_settings(
                 module, settings_in(described, condition), f"{varied}: settings"

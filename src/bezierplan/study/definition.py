@@ -24,9 +24,9 @@ class Study(Experiments, ArtefactsFile):
 
     claims: Sequence[Claim] = ()
     assumptions: Sequence[AssumptionEntry] = ()
-    votes: dict
-    pairs: list
-    reading_repeats: int | None
+    votes: Mapping = {}
+    pairs: Sequence = []
+    reading_repeats: int | None = None
     layout: Mapping[str, Layout] = {}
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:

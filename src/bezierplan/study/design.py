@@ -146,5 +146,7 @@ def together(designs: list[Design], without: Iterable[str] = ()) -> Design:
 
 def _type(values: Iterable[Any]) -> str:
     """The type of a column of settings or places with these values."""
-    kinds = {bool if isinstance(value, bool) else is_number(value) for value in values}
-    return {frozenset([bool]): "flag", frozenset([True]): "number"}.get(frozenset(kinds), "word")
+    values = [*values]
+    if values and all(isinstance(value, bool) for value in values):
+        return "flag"
+    return "number" if values and all(map(is_number, values)) else "word"

@@ -2,8 +2,9 @@
 for each rule makes its job from a study, or all, and the rule's wildcards.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from bezierplan.analysis.claims.material import Display, StudyForClaims
 from bezierplan.analysis.jobs import (
@@ -21,7 +22,7 @@ from bezierplan.analysis.jobs import (
     VerdictText,
 )
 from bezierplan.analysis.readings import assumptions
-from bezierplan.analysis.table_kinds import Pivot, TableEntry
+from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.jobs import FigureFiles, Latex
@@ -32,7 +33,7 @@ from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.definition import Study
-from bezierplan.study.experiments import BaselineEntry, descriptions, problems_job
+from bezierplan.study.experiments import descriptions, problems_job
 
 Studies = dict[str, Study]
 
@@ -136,14 +137,18 @@ def judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck
 # Tables and figures
 
 
+def _parts(artefact: TableEntry | Figure) -> list[Any]:
+    """What of a table or figure shows runs: the table, or some panels."""
+    parts = getattr(artefact, "panels", [artefact])
+    return [part for part in parts if getattr(part, "experiment", None)]
+
+
 def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
     """By experiment, the methods whose runs an artefact needs: for a table of the paper's form
     those it selects, for another all (the comparison shows them), for a figure those it selects,
     including baselines if named.
     """
-    if artefact in study.tables:
-        if (spec := study.compared().get(artefact)) is None:
-            return {}
+    if spec := study.compared().get(artefact):
         methods = study.methods_of(spec.experiment)
         if spec.printed:
             methods = one_or_list(
@@ -151,10 +156,9 @@ def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
             )
         return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
-    for panel in study.figures[artefact].panels:
-        if name := getattr(panel, "experiment", None):
-            methods = panel.where.get("method", study.own_methods(name, artefact))
-            needed.setdefault(name, set()).update(one_or_list(methods))
+    for panel in _parts(study.artefact(artefact)):
+        methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))
+        needed.setdefault(panel.experiment, set()).update(one_or_list(methods))
     return {
         name: [method for method in study.methods_of(name) if method in shown]
         for name, shown in needed.items()
@@ -184,13 +188,12 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
-    for part in getattr(spec, "panels", [spec]):
-        if name := getattr(part, "experiment", None):
-            content = study.experiments[name]
-            shown |= {*one_or_list(part.where.get("method", content.methods)), *content.problems}
-            shown |= {str(value) for values in content.vary.values() for value in values}
-            for problem in (study.problems[each] for each in content.problems):
-                shown |= {problem.workspace, problem.route}
+    for part in _parts(spec):
+        content = study.experiments[part.experiment]
+        shown |= {*one_or_list(part.where.get("method", content.methods)), *content.problems}
+        shown |= {str(value) for values in content.vary.values() for value in values}
+        for problem in (study.problems[each] for each in content.problems):
+            shown |= {problem.workspace, problem.route}
     hidden = (study.methods.keys() | study.problems.keys() | study.workspaces.keys()) - shown
     return {name: label for name, label in study.labels.items() if name not in hidden} | printed
 
@@ -290,11 +293,10 @@ def says(study: Study, artefact: str) -> str:
 
 def behind(study: Study, artefact: str, scale: str) -> str:
     """The runs of each method behind a table or figure."""
-    spec = study.artefact(artefact)
-    parts, told = getattr(spec, "panels", [spec]), []
+    parts, told = _parts(study.artefact(artefact)), []
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
-        own = [part.where for part in parts if getattr(part, "experiment", None) == experiment]
+        own = [part.where for part in parts if part.experiment == experiment]
         listed = max(len(one_or_list(where.get("repeat", []))) for where in own)
         repeats = listed or content.repeats[scale]
         drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
@@ -321,11 +323,7 @@ def claims(study: Study, scale: str) -> Claims:
         StudyForClaims(
             study.key,
             claims,
-            {
-                name: parts
-                for name, artefact in (study.tables | study.figures).items()
-                if (parts := _shown(artefact))
-            },
+            {name: _shown(each) for name, each in (study.tables | study.figures).items()},
             study.variants(),
             {name: experiment.paired for name, experiment in experiments.items()},
             {name: experiment.repeats["full"] for name, experiment in experiments.items()},
@@ -343,14 +341,9 @@ def claims(study: Study, scale: str) -> Claims:
 
 def _shown(artefact: TableEntry | Figure) -> list[Display]:
     """What a table or figure shows of runs."""
-    if isinstance(artefact, Pivot):
-        entry = {name: each for name, each in artefact.plain().items() if name in keys(Display)}
-        return [Display.model_validate(entry)]
-    panels = artefact.panels if isinstance(artefact, Figure) else []
     return [
-        Display(experiment=panel.experiment, where=panel.where)
-        for panel in panels
-        if getattr(panel, "experiment", None)
+        Display(**{name: each for name, each in part.plain().items() if name in keys(Display)})
+        for part in _parts(artefact)
     ]
 
 
@@ -407,29 +400,22 @@ def audit(study: Study, scale: str) -> Audit:
 # All studies together
 
 
-def baseline_comparison(studies: Studies, scale: str) -> BaselineTable:
-    """The studies that name a baseline."""
-    return _beside_baselines(studies, scale, lambda beside: beside.experiments)
-
-
 def worth(studies: Studies, scale: str) -> BaselineTable:
     """The studies that have a generic optimiser beside their methods; with all baselines."""
-    return _beside_baselines(
-        studies, scale, lambda beside: one_or_list(beside.worth or []), with_baselines=True
-    )
+    return baseline_comparison(studies, scale, with_baselines=True)
 
 
-def _beside_baselines(
-    studies: Studies,
-    scale: str,
-    of: Callable[[BaselineEntry], list[str]],
-    with_baselines: bool = False,
+def baseline_comparison(
+    studies: Studies, scale: str, with_baselines: bool = False
 ) -> BaselineTable:
-    """Methods of experiments beside the baseline that their study names, if it does."""
+    """The methods of studies beside the baseline that these name, if they do. with_baselines:
+    `worth`.
+    """
     baselines, repeats, shows = {}, {}, {}
     for key, study in studies.items():
-        beside = study.baseline_comparison
-        for name in of(beside) if beside else []:
+        if not (beside := study.baseline_comparison):
+            continue
+        for name in one_or_list(beside.worth or []) if with_baselines else beside.experiments:
             baselines[key] = (beside.baseline, beside.proposed)
             methods = [*study.experiments[name].methods, beside.baseline]
             if with_baselines:

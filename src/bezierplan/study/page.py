@@ -8,7 +8,7 @@ from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
     ArtefactView,
-    Citation,
+    ExperimentView,
     MethodView,
     PageJob,
     StudyView,
@@ -69,7 +69,6 @@ def page(studies: Studies, scale: str, root: str = "") -> Page:
     shown = {key: _study(own, scale, root) for key, own in studies.items()}
     return Page(
         PageJob(scale, shown, outcome=outcome and scale != "extended"),
-        [place for place in behind for key, name in [place.split("/")] if studies[key].moves(name)],
         sources=files(),
         shows=behind,
         code=[module for own in studies.values() for module in own.code_for("metrics")],
@@ -82,7 +81,6 @@ def _of_project(study: Study) -> bool:
 
 def _study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
-    paper = study.paper
     artefacts = {
         name: ArtefactView(
             study.artefact(name).title,
@@ -92,16 +90,9 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
         )
         for name in shown_of(study, scale, root)
     }
-    behind = {
-        name: (
-            [method for method in study.methods_of(name) if method not in study.baselines],
-            content.repeats[scale],
-        )
-        for name, content in study.experiments.items()
-    }
     return StudyView(
         title=study.title,
-        paper=paper and Citation(paper.title, paper.where, paper.doi),
+        paper=study.paper,
         labels=study.labels,
         methods={
             name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
@@ -118,7 +109,10 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             *(("audit",) if has_audit(study) else ()),
         ],
         changes=changes(study.key, settings_of(study)) if _of_project(study) else [],
-        experiments=behind,
+        experiments={
+            name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
+            for name, content in study.experiments.items()
+        },
     )
 
 

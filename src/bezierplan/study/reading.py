@@ -179,8 +179,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     changes: settings that take the place of those of the same name there; those of one planner are
     taken one by one.
     """
-    content = {"votes": {}, "pairs": [], "reading_repeats": None}
-    faults, invalid, broken = [], [], []
+    content, faults, invalid, broken = {}, [], [], []
     for name, model in FILES.items():
         file = folder / f"{name}.yaml"
         try:

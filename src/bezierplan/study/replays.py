@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pandas as pd
 
 from bezierplan.analysis import results
-from bezierplan.running import execution, worlds
+from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
@@ -46,9 +46,9 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
 
 def _again(chunk: Chunk, condition: Condition, repeat: int, study: Experiments) -> results.Results:
     """A run, or a drive in a world that moves."""
-    made, moving = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
+    made, moving = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     name = condition.problem
     named, met = {name: made[name]}, {name: moving[name]} if moving else {}
     table = pd.DataFrame(execution.rows_again(chunk, [(condition, repeat)], named, met))
-    joined = results.joined(table, named, worlds.bounds_of(named, met).to_pandas())
+    joined = results.joined(table, named, problems.bounds_of(named, met).to_pandas())
     return joined._replace(worlds=met, jobs={chunk.method: chunk})

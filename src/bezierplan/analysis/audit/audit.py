@@ -347,7 +347,7 @@ def audited(
     rows += of_any_paper({name: published[name] for name in job.tables}, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
-            made = problems.read(experiment_files[spec.experiment].problems)
+            made, _ = problems.read(experiment_files[spec.experiment].problems)
             rows += identified.of_table(name, published[name], spec.identify, made)
     return table(job.study, rows + of_paper(published))
 

@@ -60,11 +60,16 @@ def unlisted(folder: Path) -> list[Difference]:
     listed = _listed(folder)
     if not listed and (folder / "index.html").is_file():
         return [Difference(str(folder / LIST), "all bytes", "SHA-256", "no file", "a list")]
-    found = {name: sha256(folder / name) or "no file" for name in listed}
+    return _changed(folder, listed, folder)
+
+
+def _changed(folder: Path, digests: dict[str, str], again: Path) -> list[Difference]:
+    """Files of a folder whose digests are not those of the files of the same name in another."""
+    found = {name: sha256(again / name) or "no file" for name in digests}
     return [
-        Difference(str(folder / name), "all bytes", "SHA-256", listed[name], found[name])
-        for name in listed
-        if listed[name] != found[name]
+        Difference(str(folder / name), "all bytes", "SHA-256", digests[name], found[name])
+        for name in digests
+        if digests[name] != found[name]
     ]
 
 
@@ -85,7 +90,7 @@ def differing(
         for file in left:
             (again / file.relative_to(folder)).unlink()
         files = [file for pattern in _FOLLOW for file in sorted(again.glob(pattern))]
-        before = {file: sha256(file) for file in files}
+        before = {str(file.relative_to(again)): sha256(file) for file in files}
         # What lies above all studies is of those that the list names.
         listed = {name.split("/")[0] for name in _listed(folder)}
         shown = [key for key in places if key in listed] or [*places]
@@ -94,13 +99,7 @@ def differing(
             own = [file for file in files if file.relative_to(again).parts[0] in group]
             studies = [places[key] for key in places if key in group]
             _make(own, config, studies, away, processes)
-        return len(files), [
-            Difference(
-                str(folder / file.relative_to(again)), "all bytes", "SHA-256", stored, sha256(file)
-            )
-            for file, stored in before.items()
-            if stored != sha256(file)
-        ]
+        return len(files), _changed(folder, before, again)
 
 
 def _make(

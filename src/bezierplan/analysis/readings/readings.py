@@ -318,16 +318,15 @@ class Runner(NamedTuple):
         wanted = {name: described.problems[name] for name in names}
         homes = {place["workspace"] for place in wanted.values()}
         workspaces = {name: (described.workspaces | changed)[name] for name in sorted(homes)}
-        made = problems.build_all(
-            described._replace(problems=wanted, workspaces=workspaces), self.folder
-        )
-        return made, problems.bounds_of(made).to_pandas()
+        described = described._replace(problems=wanted, workspaces=workspaces)
+        made, moving = problems.build_all(described, self.folder)
+        return made, problems.bounds_of(made, moving).to_pandas()
 
 
 def read_problems(files: dict[str, Files]) -> dict[str, tuple[dict[str, Problem], pd.DataFrame]]:
     """Problems and bounds by experiment, from their files."""
     return {
-        name: (problems.read(each.problems), pd.read_parquet(each.bounds))
+        name: (problems.read(each.problems)[0], pd.read_parquet(each.bounds))
         for name, each in files.items()
     }
 

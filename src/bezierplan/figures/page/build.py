@@ -7,9 +7,9 @@ import re
 import subprocess
 import zlib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 import bezierplan
@@ -20,6 +20,7 @@ from bezierplan.analysis.numbers import baseline_comparison
 from bezierplan.analysis.outcome import headline
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
+from bezierplan.running.inputs import Files
 
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {
@@ -38,22 +39,24 @@ def page(
     summary: list[str] | None = None,
     proof: str | None = None,
     evidence: reader.Evidence | None = None,
+    results: Mapping[str, Files] = MappingProxyType({}),
 ) -> SimpleNamespace:
     """What the templates show. data: what the viewer reads.
 
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
     baseline_comparison.csv, if the scale has them. proof: the file of the check of the runs
-    shown (`running.recheck`), if there is one. evidence: as for `reader.studies`.
+    shown (`running.recheck`), if there is one. evidence: as for `reader.studies`. results: of the
+    experiments whose runs the viewer shows, by study/experiment.
     """
     tables = [reader.read(file) for file in summary] if summary else None
     studies = reader.studies(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
-    for key, study in studies.items():
-        for name, described in study.job.experiments.items():
-            shown, found = runs.chosen(key, name, described)
-            study.shown += shown
-            for kind, own in found.items():
-                data[kind] |= own
+    for place, files in results.items():
+        key, _, name = place.partition("/")
+        shown, found = runs.chosen(key, name, studies[key].job.experiments[name], files)
+        studies[key].shown += shown
+        for kind, own in found.items():
+            data[kind] |= own
     _share_workspaces(data)
     repeats = [own.repeats for own in job.studies.values()]
     return SimpleNamespace(

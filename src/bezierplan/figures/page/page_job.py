@@ -8,15 +8,6 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import TableEntry
 
 
-class Citation(NamedTuple):
-    """A paper as it is cited."""
-
-    title: str
-    where: str
-    """Journal and year, as far as known."""
-    doi: str | None
-
-
 class MethodView(NamedTuple):
     """A method of a study."""
 
@@ -37,25 +28,21 @@ class ArtefactView(NamedTuple):
 
 
 class ExperimentView(NamedTuple):
-    """An experiment whose runs the viewer shows."""
+    """An experiment whose runs the viewer may show."""
 
     methods: list[str]
     """Those that are shown."""
     repeats: int
-    runs: list[str]
-    """Files of chunks."""
-    problems: str
-    bounds: str
-    traces: list[str]
-    """Files of the drives, where the world moves."""
+    moves: bool
+    """Whether runs are drives."""
 
 
 class StudyView(NamedTuple):
     """A study of the page."""
 
     title: str
-    paper: Citation | None
-    """None for a reader's own study."""
+    paper: Any
+    """Title, where it appeared, and DOI, as far as known; None for a reader's own study."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     methods: dict[str, MethodView]

@@ -7,6 +7,7 @@ problems compare.
 
 import json
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from bezierplan.analysis import results
 from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
-from bezierplan.running import worlds as world_files
+from bezierplan.running.inputs import Files
 from bezierplan.workspaces import files, worlds
 from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.problem import Problem
@@ -40,13 +41,15 @@ _DRAWN = [
 Row = dict[str, Any]
 
 
-def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[Row], Row]:
+def chosen(
+    study: str, experiment: str, content: ExperimentView, inputs: Files
+) -> tuple[list[Row], Row]:
     """The runs of an experiment that the viewer shows: which of each method on each problem; and
     the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
     """
-    bounds = parquet.read_table(content.bounds).to_pandas().set_index("problem")
-    columns = [*_RANKED, *_DRAWN, *(["steps"] if content.traces else [])]
-    tables = {file: parquet.read_table(file, columns=columns) for file in content.runs}
+    bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
+    columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
+    tables = {file: parquet.read_table(file, columns=columns) for file in inputs.chunks}
     ranking = pd.concat(
         [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
     )
@@ -76,9 +79,9 @@ def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[R
         for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
     rows = pd.concat(kept) if kept else ranking
-    made, moving = problem_files.read(content.problems), world_files.read(content.problems)
+    made, moving = problem_files.read(inputs.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
-    traces = _traces(content.traces, list(by_name))
+    traces = _traces(inputs.chunks if content.moves else [], list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
         name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
@@ -96,11 +99,12 @@ def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[R
     return choice, {"runs": runs, "workspaces": workspaces, "problems": problems}
 
 
-def _traces(by_name: list[str], ids: list[str]) -> dict[str, np.ndarray]:
+def _traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
+    files = [Path(chunk).with_suffix(".traces.parquet") for chunk in chunks]
     tables = [
         parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)])
-        for file in by_name
+        for file in files
     ]
     return {
         row["id"]: np.column_stack([row["x"], row["y"]])

@@ -124,9 +124,8 @@ def _findings(
     planner: str, module: ModuleType, settings: dict[str, Any]
 ) -> Iterator[ContractFinding]:
     by_name = {problem.name: problem for problem in problems(module)}
-    hashing = 0 if is_file(planner) else None
     try:
-        made = _replies(planner, settings, by_name, SEEDS, hashing)
+        made = _replies(planner, settings, by_name, SEEDS)
         again = _replies(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
     except PlannerFailure as failure:
         yield ContractFinding("all problems", "plan", False, str(failure))
@@ -156,18 +155,18 @@ def _replies(
     settings: dict[str, Any],
     by_name: dict[str, Problem],
     seeds: tuple[int, ...],
-    hashing: int | None,
+    hashing: int = 0,
 ) -> dict[str, list[worker.Reply]]:
-    """Plans by problem, one from each generator; in a process of its own with a seed of `hash`, if
-    there is one. Raises PlannerFailure.
+    """Plans by problem, one from each generator; of a file in a process of its own with a seed of
+    `hash`. Raises PlannerFailure.
     """
     name, work = f"planner {planner}", worker.Work(planner, by_name)
     tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
     by_problem: dict[str, list[worker.Reply]] = {}
     for reply in (
-        worker.replies(work, tasks)
-        if hashing is None
-        else process.isolated_replies(work, tasks, (), name, LIMIT, hashing)
+        process.isolated_replies(work, tasks, (), name, LIMIT, hashing)
+        if is_file(planner)
+        else worker.replies(work, tasks)
     ):
         task = tasks[reply.number]
         with answer.of(task.name):

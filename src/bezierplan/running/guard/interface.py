@@ -55,7 +55,7 @@ def imported(planner: str) -> tuple[ModuleType | None, str]:
         raise
     except BaseException as error:  # a user's file can fail in any way
         return None, told(error)
-    return module, interface_fault(module) or ""
+    return module, interface_fault(module)
 
 
 class Traits(NamedTuple):
@@ -121,8 +121,8 @@ def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
     raise Fault(f"{location}: {said}")
 
 
-def interface_fault(module: ModuleType) -> str | None:
-    """What a module lacks to be a planner, or None."""
+def interface_fault(module: ModuleType) -> str:
+    """What a module lacks to be a planner; empty if nothing."""
     plan = getattr(module, "plan", None)
     if not callable(plan) or isinstance(plan, type):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
@@ -184,12 +184,10 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
         asked(module.check, location, settings)
 
 
-def _workspaces_fault(kinds: Any) -> str | None:
+def _workspaces_fault(kinds: Any) -> str:
     if not isinstance(kinds, tuple | list):
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
-    unknown = [kind for kind in kinds if kind not in KINDS.values()]
-    return (
-        f"workspaces: {unknown[0]}: unknown{closest(unknown[0], KINDS.values())}"
-        if unknown
-        else None
-    )
+    for kind in kinds:
+        if kind not in KINDS.values():
+            return f"workspaces: {kind}: unknown{closest(kind, KINDS.values())}"
+    return ""

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import blocks, from_origin, region
+from bezierplan.geometry import shortest_paths
+from bezierplan.geometry.region import blocks, region
 from bezierplan.running.simulation import ways
 from bezierplan.running.simulation.circles import ARRIVED, BLOCKED, DUE, ENDED, STOPPED
 from bezierplan.running.simulation.motion_check import Motion
@@ -39,9 +39,11 @@ def follow(
             else math.inf
         )
         if not fresh and policy.replan in ("every_step", "when_changed"):
-            return DUE, np.array(times), np.array(progress)
+            event = DUE
+            break
         if not fresh and checks and free < way.length:
-            return BLOCKED, np.array(times), np.array(progress)
+            event = BLOCKED
+            break
         fresh = False
         limit = (
             way.length
@@ -52,19 +54,23 @@ def follow(
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
             time, s = arrival, limit
-            if s >= way.length:
-                return ARRIVED, np.array([*times, time]), np.array([*progress, s])
-            if time > times[-1]:
+            if s >= way.length or time > times[-1]:
                 times, progress = [*times, time], [*progress, s]
-            if policy.replan != "never" and limit < way.length:
-                return STOPPED, np.array(times), np.array(progress)
+            if s >= way.length:
+                event = ARRIVED
+                break
+            if policy.replan != "never":
+                event = STOPPED
+                break
             time = following  # it waits for the next change
         else:
             s += (following - time) * world.pace
             time = following
         times, progress = [*times, time], [*progress, s]
         if time >= world.end:
-            return ENDED, np.array(times), np.array(progress)
+            event = ENDED
+            break
+    return event, np.array(times), np.array(progress)
 
 
 def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
@@ -81,10 +87,7 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 def free_length(grid: Grid, way: Way, s: float) -> float:
     """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
-    obstacles = region(grid)
-    collision_at, _ = checker.first_collision(
-        from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles
-    )
+    collision_at = ways.first_collision(points, region(grid))
     if math.isinf(collision_at):
         return math.inf
     lengths = s + ways.lengths(points)

@@ -15,6 +15,7 @@ import numpy as np
 from bezierplan.geometry import checker
 from bezierplan.geometry.region import region
 from bezierplan.kernels import allocation_free, compiled
+from bezierplan.running.simulation import ways
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 TOUCHING = 2 * checker.TOLERANCE
@@ -31,9 +32,7 @@ class Motion(NamedTuple):
 
     def at(self, times: np.ndarray | float) -> np.ndarray:
         """Places (..., 2) at some times."""
-        return np.stack(
-            [np.interp(times, self.times, self.points[:, axis]) for axis in range(2)], axis=-1
-        )
+        return ways.places(self.points, self.times, times)
 
 
 class Verdict(NamedTuple):

@@ -63,11 +63,9 @@ class _Log:
     def motion(self) -> Motion:
         """The motion so far, with at least two vertices."""
         points, times = np.concatenate(self.points), np.concatenate(self.times)
-        return (
-            Motion(points, times)
-            if len(times) > 1
-            else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
-        )
+        if len(times) == 1:
+            points, times = np.repeat(points, 2, axis=0), np.repeat(times, 2)
+        return Motion(points, times)
 
     def follow(self, along: Way, times: np.ndarray, progress: np.ndarray, pace: float) -> None:
         """Add a drive along a way: the lengths of it reached at some times, between which the robot
@@ -90,8 +88,7 @@ class _Log:
     def wait(self, until: float) -> None:
         """Add a wait."""
         self.waited += until - self.times[-1][-1]
-        self.points.append(self.points[-1][-1:])
-        self.times.append(np.array([until]))
+        self.drive(self.points[-1][-1], until)
 
 
 def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> Ride:
@@ -159,6 +156,10 @@ def _plan(
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, cpu_time()
+
+    def made(path: Path | None, length: float, margin: float) -> DrivePlan:
+        return DrivePlan(time, path, length, margin, cpu_time() - began, evaluations)
+
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
     if policy.start == "centre" or isinstance(world, ChangingCells):
         approach = cells.way_to_start(motion, world.workspace(time), policy.start)
@@ -168,27 +169,15 @@ def _plan(
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
-            return (
-                DrivePlan(time, None, 0.0, margin, cpu_time() - began, 0),
-                way(approach),
-                state,
-            )
+            return made(None, 0.0, margin), way(approach), state
         if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
         plan, next_state = planner(seen, state)
         evaluations += plan.evaluations
         if plan.path is not None and plan.claimed_feasible:
             along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
-            return (
-                DrivePlan(time, plan.path, along.length, margin, cpu_time() - began, evaluations),
-                along,
-                next_state,
-            )
-    return (
-        DrivePlan(time, None, math.inf, math.nan, cpu_time() - began, evaluations),
-        None,
-        state,
-    )
+            return made(plan.path, along.length, margin), along, next_state
+    return made(None, math.inf, math.nan), None, state
 
 
 def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:

@@ -28,12 +28,19 @@ class Way(NamedTuple):
 
     def place(self, s: np.ndarray | float) -> np.ndarray:
         """Points (..., 2) after given lengths of way."""
-        return np.stack([np.interp(s, self.at, self.points[:, axis]) for axis in range(2)], axis=-1)
+        return places(self.points, self.at, s)
 
     def part(self, begin: float, end: float) -> np.ndarray:
         """The polyline (m, 2) between two lengths of way, of at least two points."""
         inside = self.points[(self.at > begin) & (self.at < end)]
         return np.concatenate([self.place(begin)[None], inside, self.place(end)[None]])
+
+
+def places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
+    """Places (..., 2), at some values, of what moves straight from point to point (n, 2).
+    at: (n,) the value at each point.
+    """
+    return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
 
 
 def way(points: np.ndarray) -> Way:
@@ -98,5 +105,13 @@ def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -
 
 def _free(points: np.ndarray, obstacles: Region) -> bool:
     """Whether a polyline (n, 2) is free."""
+    return math.isinf(first_collision(points, obstacles))
+
+
+def first_collision(points: np.ndarray, obstacles: Region) -> float:
+    """Where a polyline (n, 2) first enters an obstacle, by chord and share of it; infinite if
+    never.
+    """
     chords = np.stack([points[:-1], points[1:]], axis=1)
-    return math.isinf(checker.first_collision(from_origin(chords, obstacles), obstacles)[0])
+    collision_at, _ = checker.first_collision(from_origin(chords, obstacles), obstacles)
+    return collision_at
