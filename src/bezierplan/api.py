@@ -422,7 +422,7 @@ def plan(
     }
     grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
     placed = problem_files.placed(grown, getattr(module, "workspaces", None))
-    _check_settings(name, module, settings, placed)
+    check_settings(name, module, settings, placed)
     parts = planning.legs(placed, places)
     shortest, label = planning.shortest(parts), f"method: {name}"
     try:
@@ -560,7 +560,7 @@ def _keys() -> list[str]:
     return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
 
 
-def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem: Problem) -> None:
+def check_settings(name: str, module: Any, settings: Mapping[str, Any], problem: Problem) -> None:
     """Raise ValueError unless a planner takes exactly these settings and serves this problem."""
     interface.refuse_unknown(module, settings, "settings")
     interface.check_settings(module, dict(settings), "settings")

@@ -1,12 +1,17 @@
 """Score paths or planners on the problems of a paper, beside the paper's methods."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from bezierplan import api
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.commands.arguments import Settings
+from bezierplan.running import problems as problem_files
+from bezierplan.running.guard import contract, interface
+from bezierplan.running.guard.worker import Reply
+from bezierplan.workspaces.problem import Problem
 
 
 def main(
@@ -48,11 +53,26 @@ def main(
             paths = benchmark.read_paths(Path(candidate), asked)
             runs = [benchmark.run(asked[name], *row) for name, *row in paths]
         else:
+            made = _planned(candidate, asked, settings or {}, repeats)
             runs = [
-                benchmark.run(problem, answer.path, answer.evaluations)
-                for problem in asked.values()
-                for seed in range(repeats)
-                for answer in [api.plan(problem, candidate, seed=seed, **(settings or {}))]
+                benchmark.run(asked[name], each.result.path, each.result.evaluations)
+                for name, replies in made.items()
+                for each in replies
             ]
         tables.append(benchmark.summaries(pd.DataFrame(runs).assign(method=f"here:{candidate}")))
     print(benchmark.scores(pd.concat(tables)).to_string(float_format="%.4g"))
+
+
+def _planned(
+    method: str, problems: dict[str, Problem], settings: dict[str, Any], repeats: int
+) -> dict[str, list[Reply]]:
+    """What a planner answers to problems, by name; one in a file is started once for all. Raises
+    ValueError for a wrong setting, and PlannerFailure.
+    """
+    planner, preset = api.named(method)
+    module, settings = interface.loaded(planner, f"method: {method}"), preset | settings
+    kinds = getattr(module, "workspaces", None)
+    suited = {name: problem_files.placed(each, kinds) for name, each in problems.items()}
+    for each in suited.values():
+        api.check_settings(method, module, settings, each)
+    return contract.replies(planner, settings, suited, range(repeats))

@@ -125,12 +125,12 @@ def _findings(
 ) -> Iterator[ContractFinding]:
     by_name = {problem.name: problem for problem in problems(module)}
     try:
-        made = _replies(planner, settings, by_name, SEEDS)
-        again = _replies(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
+        made = replies(planner, settings, by_name, SEEDS)
+        again = replies(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
     except PlannerFailure as failure:
         yield ContractFinding("all problems", "plan", False, str(failure))
         return
-    plans_of = {name: [each.result for each in replies] for name, replies in made.items()}
+    plans_of = {name: [each.result for each in own] for name, own in made.items()}
     columns = next(iter(plans_of.values()))[0].extra.keys()
     keeps_best = getattr(module, "keeps_best", True)
     for name, plans in plans_of.items():
@@ -142,7 +142,7 @@ def _findings(
             ("random numbers", "", _repeats(plans, [each.result for each in again.get(name, ())])),
         ):
             yield ContractFinding(name, fact, not fault, fault or detail)
-    draws = any(each.drew for replies in made.values() for each in replies)
+    draws = any(each.drew for own in made.values() for each in own)
     fault = "" if draws else worker.UNDRAWN
     if getattr(module, "deterministic", False):
         differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
@@ -150,11 +150,11 @@ def _findings(
     yield ContractFinding("all problems", "random numbers", not fault, fault)
 
 
-def _replies(
+def replies(
     planner: str,
     settings: dict[str, Any],
     by_name: dict[str, Problem],
-    seeds: tuple[int, ...],
+    seeds: Sequence[int],
     hashing: int = 0,
 ) -> dict[str, list[worker.Reply]]:
     """Plans by problem, one from each generator; of a file in a process of its own with a seed of
