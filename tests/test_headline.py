@@ -65,7 +65,7 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
     ]
     assert found.papers.loc["one"].to_list() == ["in part", *"21", "1 of 2", *"1110"]
     assert found.papers.loc["two"].to_list() == ["not reproduced", *"00", "1 of 1", *"0021"]
-    assert found.methods.loc["one"].to_list() == ["90 %", "0.5 ×", "12 ×", "3 ×"]
+    assert found.methods.loc["one"].to_list() == ["90 %", "0.50 ×", "12 ×", "3 ×"]
 
 
 def test_findings_of_ours_and_other_interpretations_do_not_count():

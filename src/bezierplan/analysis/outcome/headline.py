@@ -216,9 +216,10 @@ def _measured(row: pd.Series) -> dict[str, str]:
     shown = {"feasible": f"{baseline_comparison.number(100 * row['feasible'])} %"}
     for name in ("length", "curvature", "cpu"):
         value = row[name]
-        shown[name] = (
-            f"{baseline_comparison.number(value, 3 if name == 'length' else 2)} ×"
-            if np.isfinite(value)
-            else ("corners" if np.isinf(value) else "")
-        )
+        if not np.isfinite(value):
+            shown[name] = "corners" if np.isinf(value) else ""
+        elif name == "length":  # near 1, where the second decimal tells
+            shown[name] = f"{value:.2f} ×"
+        else:
+            shown[name] = f"{baseline_comparison.number(value, 2)} ×"
     return shown
