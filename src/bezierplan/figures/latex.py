@@ -117,13 +117,13 @@ def _heads(names: list[str]) -> list[str]:
         return [_row(names)]
     above, rules, below = [], "", []
     for first, group in itertools.groupby(parts, key=lambda part: part[0]):
-        own = [part[-1] for part in group]
-        if own == [first]:
+        shown = [part[-1] for part in group]
+        if shown == [first]:
             above.append("")
         else:
-            above.append(f"\\multicolumn{{{len(own)}}}{{c}}{{{escaped(first)}}}")
-            rules += f"\\cmidrule(lr){{{len(below) + 1}-{len(below) + len(own)}}}"
-        below += own
+            above.append(f"\\multicolumn{{{len(shown)}}}{{c}}{{{escaped(first)}}}")
+            rules += f"\\cmidrule(lr){{{len(below) + 1}-{len(below) + len(shown)}}}"
+        below += shown
     return [" & ".join(above) + " \\\\", rules, _row(below)]
 
 
