@@ -16,7 +16,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, repeated, select
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.table_kinds import Pivot, TableValue
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
@@ -71,6 +71,19 @@ class Cell(NamedTuple):
     groups: tuple[np.ndarray, ...] | None
 
 
+class _Measures(NamedTuple):
+    """What an entry of `values` needs of each run (n,): whether it asks for it, and counts it; its
+    metric, bound and gap, and the least value that it can have.
+    """
+
+    selects: np.ndarray
+    counts: np.ndarray
+    values: np.ndarray
+    bound: np.ndarray
+    gap: np.ndarray
+    least: np.ndarray
+
+
 def cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
@@ -103,40 +116,51 @@ def cells(
         least = entry.least or metric.least
         columns = runs[[metric.bound]].assign(least=runs.get(least, least))
         bound, least = columns.to_numpy(dtype=float).T
-        gap, counts = measured(metric.gap), selects & counts
+        of_runs = _Measures(selects, selects & counts, values, bound, measured(metric.gap), least)
         for key, group in by_keys:
-            places = group.index.to_numpy()
-            of_entry, counted = places[selects[places]], places[counts[places]]
-            # A run without a value counts nowhere.
-            chosen = counted[~np.isnan(values[counted])]
-            numbers, groups = values[chosen], None
-            if spec.within:
-                units = runs[spec.within].to_numpy()[chosen]
-                # Tuples, because pandas would expand lists of arrays.
-                groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
-            cell = Cell(
-                runs=len(places),
-                draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
-                share_feasible=runs["feasible"].to_numpy()[places].mean(),
-                bound=_median(bound[places]),
-                gap=_median(gap[places]),
-                least=np.fmin.reduce(least[places]),
-                most=metric.most,
-                value=number,
-                metric=entry.metric,
-                statistic="",
-                decimals=entry.decimals,
-                size=len(counted),
-                numbers=np.sort(numbers),
-                by_run=pd.Series(
-                    values[of_entry],
-                    pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
-                ),
-                groups=groups,
-            )
+            cell = _cell(runs, group.index.to_numpy(), entry, of_runs, spec.within)
+            cell = cell._replace(value=number)
             rows += [[*key, *cell._replace(statistic=name)] for name in entry.statistics]
     # Decimals of type object stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
+
+
+def _cell(
+    runs: pd.DataFrame,
+    places: np.ndarray,
+    entry: TableValue,
+    measures: _Measures,
+    within: str | None,
+) -> Cell:
+    """The cell of an entry and of the runs at some places, without its place and statistic."""
+    of_entry, counted = (places[mask[places]] for mask in (measures.selects, measures.counts))
+    # A run without a value counts nowhere.
+    chosen = counted[~np.isnan(measures.values[counted])]
+    numbers, groups = measures.values[chosen], None
+    if within:
+        units = runs[within].to_numpy()[chosen]
+        # Tuples, because pandas would expand lists of arrays.
+        groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
+    return Cell(
+        runs=len(places),
+        draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
+        share_feasible=runs["feasible"].to_numpy()[places].mean(),
+        bound=_median(measures.bound[places]),
+        gap=_median(measures.gap[places]),
+        least=np.fmin.reduce(measures.least[places]),
+        most=metrics.METRICS[entry.metric].most,
+        value=0,
+        metric=entry.metric,
+        statistic="",
+        decimals=entry.decimals,
+        size=len(counted),
+        numbers=np.sort(numbers),
+        by_run=pd.Series(
+            measures.values[of_entry],
+            pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
+        ),
+        groups=groups,
+    )
 
 
 def _median(values: np.ndarray) -> float:
