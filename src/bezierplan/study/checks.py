@@ -26,11 +26,11 @@ from bezierplan.running import columns, problems
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
-from bezierplan.schema.model import Model, named, one_or_list, parsed
+from bezierplan.schema.model import Model, identity, named, one_or_list, parsed
 from bezierplan.schema.words import told
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
-from bezierplan.study.claims import AssumptionEntry
+from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
 from bezierplan.study.design import Design, design, together
 from bezierplan.study.experiments import Experiment, Method, ProblemEntry, descriptions
@@ -144,6 +144,12 @@ class Checks:
                 for identity in ids:
                     if ids.count(identity) > 1:
                         raise Fault(f"{section}: {identity}: another one has this id already")
+        with self.at(relative(study.folder / "assumptions.yaml")):
+            self.each("readings", {entry.name: entry for entry in study.readings}, self.reading)
+            names = [entry.folder for entry in study.readings]
+            for name in names:
+                if names.count(name) > 1:
+                    raise Fault(f"readings: {name}: another one has this name already")
         with self.at(relative(study.folder / "assumptions.yaml"), "votes"):
             check_all(study.votes.keys() - self.invalid, study.with_published(), "table")
             for table, voting in study.votes.items():
@@ -456,6 +462,25 @@ class Checks:
             for method in methods:
                 with self.at("alternatives", str(value), method):
                     self.settings(changed, method)
+
+    def reading(self, name: str, reading: ReadingEntry) -> None:
+        """Its values are alternatives that a run can have, and its claims exist."""
+        known = {each.id: each for each in self.study.assumptions}
+        for key, value in reading.values.items():
+            if key in self.invalid:
+                continue
+            check_known(key, known, "values")
+            assumption = known[key]
+            if not (assumption.setting or assumption.workspace):
+                raise Fault(f"values: {key}: governs no setting, so that no run can have it")
+            if assumption.excluded_by:
+                raise Fault(f"values: {key}: excluded by {assumption.excluded_by}")
+            if identity(value) not in map(identity, assumption.alternatives):
+                raise Fault(
+                    f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
+                )
+        claims = [claim.id for claim in self.study.claims]
+        check_all(set(reading.claims) - self.invalid, claims, "claims")
 
 
 def inside(folder: Path, name: str, location: str) -> None:

@@ -5,11 +5,12 @@ A claim is defined next to the code that judges it (`analysis.claims.claim`), an
 each kind of check.
 """
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.claim import Claim, ClaimId
 from bezierplan.schema.model import (
     Count,
     Line,
@@ -94,10 +95,42 @@ class AssumptionEntry(Model):
         return self
 
 
+class ReadingEntry(Model):
+    """Another program that a careful reader of the paper could have written."""
+
+    name: Annotated[
+        str,
+        matching(
+            r"[A-Za-z0-9.-]+(,? [A-Za-z0-9.-]+){0,9}",
+            "a few words of letters, digits, . and -, with single spaces between them",
+        ),
+    ] = Field(description="words that a reader of the tables understands, such as weak rivals")
+    values: dict[AssumptionId, Setting] = Field(
+        description="id of an assumption → one of its alternatives; all of them hold at once",
+        min_length=1,
+    )
+    reason: Line = Field(
+        description="why a careful reader of the paper could have written this program, one or two "
+        "lines; no printed value is a reason"
+    )
+    claims: listed(ClaimId) = Field(
+        [],
+        description="the claims that are judged under it; left out: those with `main`",
+    )
+
+    @property
+    def folder(self) -> str:
+        """The name of the folder of its results."""
+        return re.sub("[ ,]+", "_", self.name)
+
+
 class AssumptionsFile(Model):
     """The file."""
 
     assumptions: list[AssumptionEntry] = Field(description="a list of assumptions", min_length=1)
+    readings: list[ReadingEntry] = Field(
+        [], description="a list of joint readings, under which claims are judged at scale extended"
+    )
     reading_repeats: Count = Field(
         None,
         description="how many runs of each method under each condition judge a reading, a whole "

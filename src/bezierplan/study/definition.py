@@ -10,7 +10,7 @@ from bezierplan.places import relative
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.artefacts import ArtefactsFile
-from bezierplan.study.claims import AssumptionEntry
+from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.experiments import Experiments
 from bezierplan.workspaces import files
 
@@ -24,6 +24,7 @@ class Study(Experiments, ArtefactsFile):
 
     claims: Sequence[Claim] = ()
     assumptions: Sequence[AssumptionEntry] = ()
+    readings: Sequence[ReadingEntry] = ()
     votes: Mapping = {}
     pairs: Sequence = []
     reading_repeats: int | None = None
