@@ -20,7 +20,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
-from bezierplan.study import experiments, jobs, page, reading
+from bezierplan.study import alternatives, experiments, jobs, page, reading
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -70,6 +70,26 @@ RESULTS = "results/{scale}/{study}"
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 
 
+# A study under a reading is a study again, with results in a folder of its own. What it does not
+# change, it shares with the default: with the study, or under single alternatives, of which fewer
+# runs are made, with the default among them.
+READINGS, ALTERNATIVES = (
+    {
+        f"{key}/{folder}/{name}": own
+        for key, study in STUDIES.items()
+        for name, own in make(study).items()
+    }
+    for folder, make in (
+        ("readings", alternatives.joint_readings),
+        ("alternatives", alternatives.single_alternatives),
+    )
+)
+EVERY = STUDIES | READINGS | ALTERNATIVES
+DEFAULTS = {name: name.split("/")[0] for name in READINGS} | {
+    name: f"{name.rpartition('/')[0]}/{alternatives.DEFAULT}" for name in ALTERNATIVES
+}
+
+
 def one_of(names):
     """Pattern of names; without names, one that never matches."""
     return "|".join(map(re.escape, sorted(set(names)))) or "(?!)"
@@ -88,7 +108,7 @@ def studies_with(files):
 STILL, MOVING = (
     {
         key: [f"runs/{name}" for name in study.experiments if study.moves(name) == moves]
-        for key, study in STUDIES.items()
+        for key, study in EVERY.items()
     }
     for moves in (False, True)
 )
@@ -127,7 +147,7 @@ DRAWN = {key: in_trees(study.figures) for key, study in STUDIES.items()}
 
 wildcard_constraints:
     scale=one_of(experiments.SCALES),
-    study=one_of(STUDIES),
+    study=one_of(EVERY),
     experiment=one_of(name for study in STUDIES.values() for name in study.experiments),
     method=one_of(name for study in STUDIES.values() for name in study.methods),
     chunk="[0-9]+",
@@ -147,7 +167,7 @@ def made(make, more, wildcards):
     names = dict(wildcards)
     names.pop("tree", None)
     study = names.pop("study", None)
-    return make(STUDIES[study] if study else STUDIES, **names, **dict(more))
+    return make(EVERY[study] if study else STUDIES, **names, **dict(more))
 
 
 def of(make, **more):
@@ -173,19 +193,42 @@ def results(job, *kinds):
     return lambda wildcards: {kind: files_read(job, kind, wildcards) for kind in kinds or KINDS}
 
 
+@cache
+def home(scale, study, experiment, method=""):
+    """The study whose problems of an experiment, or whose runs of a method, a study shares."""
+    default = DEFAULTS.get(study, study)
+    shares = default != study and jobs.is_shared(
+        EVERY[study], EVERY[default], scale, experiment, method
+    )
+    return home(scale, default, experiment, method) if shares else study
+
+
+def problems_of(wildcards):
+    """The file of the problems of runs."""
+    own = home(wildcards.scale, wildcards.study, wildcards.experiment)
+    return KINDS["problems"].format(
+        scale=wildcards.scale, study=own, experiment=wildcards.experiment
+    )
+
+
 def files_read(job, kind, wildcards):
     """Those of one kind."""
     found = []
     for name, methods in job(wildcards).shows.items():
         study, _, experiment = name.rpartition("/")
         study = study or wildcards.study
-        if kind == "traces" and not STUDIES[study].moves(experiment):
+        if kind == "traces" and not EVERY[study].moves(experiment):
             continue
-        place = {"scale": wildcards.scale, "study": study, "experiment": experiment}
+        place = {"scale": wildcards.scale, "experiment": experiment}
         chunks = [(method, n) for method in methods for n in range(methods[method])]
         # Problems have no methods.
         of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
-        found += [KINDS[kind].format(**place, method=method, chunk=n) for method, n in of_runs]
+        found += [
+            KINDS[kind].format(
+                **place, study=home(study=study, method=method, **place), method=method, chunk=n
+            )
+            for method, n in of_runs
+        ]
     return [*dict.fromkeys(found)]
 
 
@@ -211,25 +254,26 @@ def caption(wildcards, output):
 
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
-READ = [key for key, study in STUDIES.items() if study.votes]
+READ = [key for key, study in STUDIES.items() if study.readings]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def of_readings(scale, studies, *names):
-    """Files of the readings of some studies, which take minutes: at scale extended alone."""
-    return [
-        f"results/{scale}/{key}/{name}.csv"
-        for key in READ
-        if scale == "extended" and key in studies
-        for name in names
+def under_readings(file):
+    """A file of each joint reading of a study, at the scale at which claims are judged so."""
+    return lambda wildcards: [
+        f"results/{wildcards.scale}/{name}/{file}"
+        for name in READINGS
+        if wildcards.scale == jobs.JUDGED_AT and DEFAULTS[name] == wildcards.study
     ]
 
 
-def evidence(scale, studies):
-    """What sentences take from many runs alone."""
+def under_alternatives(wildcards):
+    """The comparisons of claims by default and under each alternative, if a figure draws them."""
+    drawn = STUDIES[wildcards.study].figures[wildcards.figure].claims
     return [
-        *of_readings(scale, studies, "readings"),
-        *([f"results/{scale}/worth.csv"] if scale == "extended" else []),
+        f"results/{wildcards.scale}/{name}/claim_checks.csv"
+        for name in ALTERNATIVES
+        if drawn and name.split("/")[0] == wildcards.study
     ]
 
 
@@ -244,6 +288,7 @@ def shown(wildcards):
     named = {
         "claims": CLAIMED,
         "claim_checks": CLAIMED,
+        "claims_by_reading": CLAIMED,
         "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
     }
     summary = [f"results/{wildcards.scale}/wholes.csv"] if COMPARED else []

@@ -12,7 +12,6 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.claim import Claim, ClaimId
 from bezierplan.schema.model import (
-    Count,
     Line,
     Metric,
     Model,
@@ -59,8 +58,8 @@ class AssumptionEntry(Model):
     )
     excluded_by: Line = Field(
         None,
-        description="the place of the paper, in our words, that excludes the alternatives: a "
-        "reading with one is never the most likely",
+        description="the place of the paper, in our words, that excludes the alternatives, which "
+        "then are no readings",
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
     methods: listed(Annotated[Name, Names("method")]) = Field(
@@ -131,20 +130,8 @@ class AssumptionsFile(Model):
     readings: list[ReadingEntry] = Field(
         [], description="a list of joint readings, under which claims are judged at scale extended"
     )
-    reading_repeats: Count = Field(
-        None,
-        description="how many runs of each method under each condition judge a reading, a whole "
-        "number; left out: five times the paper's, and at least 100; fewer where layouts are "
-        "drawn",
-    )
-    pairs: list[dict[AssumptionId, Setting]] = Field(
-        [],
-        description="a list of readings with two values, for assumptions that trade off: id of an "
-        "assumption → one of its alternatives",
-    )
-    votes: dict[Name, dict[Metric, Where]] = Field(
+    fitted: dict[Name, dict[Metric, Where]] = Field(
         {},
-        description="table → metric → the printed numbers that score readings (`snakemake "
-        "readings`): column → value or list of values, {} for all; those of these tables to which "
-        "something was fitted have none, and neither agree nor disagree",
+        description="table → metric → the printed numbers to which something was fitted, so that "
+        "they confirm nothing: column → value or list of values, {} for all",
     )

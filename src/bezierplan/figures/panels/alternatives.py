@@ -1,0 +1,147 @@
+"""A specification curve: what a claim rests on, the effect with its interval, by default and under
+every single alternative to what the paper leaves open.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import naming
+from bezierplan.analysis.claims.claim import ClaimId
+from bezierplan.figures import style
+from bezierplan.figures.panels import Note, Panel, Sources
+from bezierplan.schema.model import Names
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+FEW = 100
+"""Runs of each method under each condition, at most."""
+
+# Of a row, of the gap between two assumptions, and of the axes, in inches.
+_ROW, _GAP, _WIDTH = 0.125, 0.06, 2.7
+
+# Letters of a line of text beside the axes.
+_LETTERS = 50
+
+_LOOKS = {
+    "+": style.mark("o", 3.5, style.BLUE, label="supports the claim"),
+    "?": style.mark("o", 3.5, style.BLACK, markerfacecolor=style.FREE, label="not decided"),
+    "0": style.mark("s", 3.2, style.BLACK, markerfacecolor=style.FREE, label="too small to matter"),
+    "-": style.mark("X", 4.2, style.RED, label="contradicts the claim"),
+}
+
+
+class Options(Panel):
+    """Keys of a panel."""
+
+    claim: Annotated[ClaimId, Names("claim")] = Field(
+        description="the id of a claim: its decisive comparison is drawn, by default and under "
+        "each alternative of `assumptions.yaml` that no sentence excludes, of few runs"
+    )
+
+    def source(self, sources: Sources) -> pd.DataFrame:
+        """The decisive comparison under each alternative."""
+        import pandas as pd
+
+        rows = []
+        for alternative, checks in sources.alternatives:
+            own = checks[(checks["id"] == self.claim) & checks["decisive"]]
+            rows.append(alternative | (own.iloc[0].to_dict() if len(own) else {}))
+        return pd.DataFrame(rows)
+
+
+_COMPARED = ["metric", "statistic", "unit", "scale", "group", "relation", "other", "place"]
+
+
+def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
+    """One row per alternative, the default first, then those of each assumption, and the
+    assumptions by how far one of them moves the effect; columns: assumption, detail, value, what is
+    compared, effect, low95, high95, mark.
+    """
+    frame = source.reindex(
+        columns=["assumption", "detail", "value", *_COMPARED, "effect", "low95", "high95", "mark"]
+    )
+    moved = (frame["effect"] - frame["effect"].iloc[0]).abs().fillna(np.inf)
+    frame["moved"] = moved.groupby(frame["assumption"]).transform("max")
+    frame.loc[frame["assumption"] == "", "moved"] = np.inf
+    first = frame["assumption"].ne("")
+    order = frame.assign(first=first).sort_values(
+        ["first", "moved", "assumption", "effect"], ascending=[True, False, True, True]
+    )
+    return order.drop(columns=["first", "moved"])
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the rows from top to bottom: in words at the left, what is open and its value."""
+    default = frame.iloc[0]
+    groups = [own for _, own in frame.groupby(frame["assumption"].fillna(""), sort=False)]
+    names = frame["value"].astype(str).str.replace("_", " ")
+    beside = 4 + 4.1 * names.str.len().max()
+    top, places = 0.0, []
+    for own in groups:
+        lines = textwrap.wrap(str(own["detail"].iloc[0]), _LETTERS)
+        rows = max(len(own), len(lines))
+        first = top + (rows - len(own)) / 2
+        places += [first + 0.5 + number for number in range(len(own))]
+        axes.annotate(
+            "\n".join(lines),
+            (0, top + rows / 2),
+            (-beside, 0),
+            xycoords=axes.get_yaxis_transform(),
+            textcoords="offset points",
+            ha="right",
+            va="center",
+            linespacing=1.05,
+        )
+        top += rows + _GAP / _ROW
+        axes.axhline(top - _GAP / _ROW / 2, color="0.88", linewidth=0.5, zorder=0)
+    at = np.array(places)
+    axes.set_yticks(at, names)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(top, -_GAP / _ROW)
+    band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
+    axes.axvspan(default["low95"], default["high95"], **band)
+    is_share = default["relation"] in ("in", "in at_least", "in at_most")
+    needed = float(default["other"]) if is_share else 0.0
+    label = "share that the claim needs" if is_share else "no difference"
+    axes.axvline(needed, **style.BOUND, label=label)
+    axes.hlines(at, frame["low95"], frame["high95"], color="0.35", linewidth=0.8)
+    axes.plot([], [], **style.INTERVAL)
+    marks = frame["mark"].fillna("?").to_numpy()
+    for mark, look in _LOOKS.items():
+        if (own := marks == mark).any():
+            axes.plot(frame["effect"].to_numpy()[own], at[own], zorder=3, **look)
+    for place in at[frame["effect"].isna().to_numpy()]:
+        axes.annotate(
+            "no value", (0.5, place), xycoords=axes.get_yaxis_transform(), ha="center", va="center"
+        )
+    axes.set_box_aspect((top * _ROW + _GAP) / _WIDTH)
+    axes.grid(visible=True, axis="x")
+    axes.set_xlabel(_name_effect(default, is_share, scene))
+    counts = [
+        f"{(marks == mark).sum()} {look['label']}"
+        for mark, look in _LOOKS.items()
+        if (marks == mark).any()
+    ]
+    return Note(
+        "",
+        f"one row for each alternative, alone, of at most {FEW} runs of a method under a "
+        f"condition; the comparison that decides {options.claim}",
+        f"of {len(frame)} rows {', '.join(counts)}",
+    )
+
+
+def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
+    """Return what the axis of the effect shows."""
+    metric = naming.column_name(row["metric"], scene.labels)
+    if is_share:
+        return f"share of runs: {metric}"
+    unit = "share of the other" if row["scale"] == "relative" else row["unit"]
+    unit = "" if unit in ("-", "") or unit != unit else f" ({unit})"
+    return f"difference in {metric}{unit}"
