@@ -4,8 +4,8 @@
 rule claims:
     input:
         unpack(results(of(jobs.claims))),
-        readings=under_readings("claims.csv"),
-        checks=under_readings("claim_checks.csv"),
+        readings=of_readings("claims.csv"),
+        checks=of_readings("claim_checks.csv"),
         sources=sources(of(jobs.claims)),
     output:
         claims=report(
@@ -43,7 +43,7 @@ use rule claims as claims_of_reading with:
         claims=f"{RESULTS}/claims.csv",
         checks=f"{RESULTS}/claim_checks.csv",
     wildcard_constraints:
-        study=one_of(READINGS | ALTERNATIVES),
+        study=f"(?:{one_of(STUDIES)}){BELOW}",
 
 
 rule audit:

@@ -70,24 +70,41 @@ RESULTS = "results/{scale}/{study}"
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 
 
-# A study under a reading is a study again, with results in a folder of its own. What it does not
-# change, it shares with the default: with the study, or under single alternatives, of which fewer
-# runs are made, with the default among them.
-READINGS, ALTERNATIVES = (
-    {
-        f"{key}/{folder}/{name}": own
-        for key, study in STUDIES.items()
-        for name, own in make(study).items()
-    }
-    for folder, make in (
-        ("readings", alternatives.joint_readings),
-        ("alternatives", alternatives.single_alternatives),
-    )
-)
-EVERY = STUDIES | READINGS | ALTERNATIVES
-DEFAULTS = {name: name.split("/")[0] for name in READINGS} | {
-    name: f"{name.rpartition('/')[0]}/{alternatives.DEFAULT}" for name in ALTERNATIVES
+UNDER = {
+    "readings": alternatives.joint_readings,
+    "alternatives": alternatives.single_alternatives,
 }
+"""Folder in the results of a study -> the studies under other values, whose results it has."""
+
+
+@cache
+def under(key, folder):
+    """The studies in a folder of a study, each by the place of its results."""
+    return {f"{key}/{folder}/{name}": own for name, own in UNDER[folder](STUDIES[key]).items()}
+
+
+def study_of(place):
+    """The study whose results are at a place."""
+    key, *below = place.split("/")
+    return under(key, below[0])[place] if below else STUDIES[key]
+
+
+@cache
+def home(scale, study, experiment, method=""):
+    """Where the problems of an experiment are, or the runs of a method, for the study at a place.
+    What a reading does not change, it shares with the study; what an alternative does not, with the
+    default among the alternatives, which has as few runs.
+    """
+    key, *below = study.split("/")
+    if not below or study == (default := DEFAULTS[below[0]].format(key)):
+        return study
+    made = jobs.is_shared(study_of(study), study_of(default), scale, experiment, method)
+    return default if made else study
+
+
+DEFAULTS = {"readings": "{}", "alternatives": f"{{}}/alternatives/{alternatives.DEFAULT}"}
+BELOW = rf"/(?:{'|'.join(UNDER)})/[^/]+"
+"""Pattern of a place below that of a study."""
 
 
 def one_of(names):
@@ -100,7 +117,10 @@ def studies_with(files):
     table in one study may be another kind in another.
     """
     return (
-        "|".join(f"{re.escape(key)}(?=/(?:{one_of(names)})[./])" for key, names in files.items())
+        "|".join(
+            f"{re.escape(key)}(?:{BELOW})?(?=/(?:{one_of(names)})[./])"
+            for key, names in files.items()
+        )
         or "(?!)"
     )
 
@@ -108,7 +128,7 @@ def studies_with(files):
 STILL, MOVING = (
     {
         key: [f"runs/{name}" for name in study.experiments if study.moves(name) == moves]
-        for key, study in EVERY.items()
+        for key, study in STUDIES.items()
     }
     for moves in (False, True)
 )
@@ -147,7 +167,7 @@ DRAWN = {key: in_trees(study.figures) for key, study in STUDIES.items()}
 
 wildcard_constraints:
     scale=one_of(experiments.SCALES),
-    study=one_of(EVERY),
+    study=f"(?:{one_of(STUDIES)})(?:{BELOW})?",
     experiment=one_of(name for study in STUDIES.values() for name in study.experiments),
     method=one_of(name for study in STUDIES.values() for name in study.methods),
     chunk="[0-9]+",
@@ -167,7 +187,7 @@ def made(make, more, wildcards):
     names = dict(wildcards)
     names.pop("tree", None)
     study = names.pop("study", None)
-    return make(EVERY[study] if study else STUDIES, **names, **dict(more))
+    return make(study_of(study) if study else STUDIES, **names, **dict(more))
 
 
 def of(make, **more):
@@ -193,16 +213,6 @@ def results(job, *kinds):
     return lambda wildcards: {kind: files_read(job, kind, wildcards) for kind in kinds or KINDS}
 
 
-@cache
-def home(scale, study, experiment, method=""):
-    """The study whose problems of an experiment, or whose runs of a method, a study shares."""
-    default = DEFAULTS.get(study, study)
-    shares = default != study and jobs.is_shared(
-        EVERY[study], EVERY[default], scale, experiment, method
-    )
-    return home(scale, default, experiment, method) if shares else study
-
-
 def problems_of(wildcards):
     """The file of the problems of runs."""
     own = home(wildcards.scale, wildcards.study, wildcards.experiment)
@@ -217,7 +227,7 @@ def files_read(job, kind, wildcards):
     for name, methods in job(wildcards).shows.items():
         study, _, experiment = name.rpartition("/")
         study = study or wildcards.study
-        if kind == "traces" and not EVERY[study].moves(experiment):
+        if kind == "traces" and not study_of(study).moves(experiment):
             continue
         place = {"scale": wildcards.scale, "experiment": experiment}
         chunks = [(method, n) for method in methods for n in range(methods[method])]
@@ -258,23 +268,20 @@ READ = [key for key, study in STUDIES.items() if study.readings]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def under_readings(file):
+def of_readings(file):
     """A file of each joint reading of a study, at the scale at which claims are judged so."""
     return lambda wildcards: [
-        f"results/{wildcards.scale}/{name}/{file}"
-        for name in READINGS
-        if wildcards.scale == jobs.JUDGED_AT and DEFAULTS[name] == wildcards.study
+        f"results/{wildcards.scale}/{place}/{file}"
+        for place in under(wildcards.study, "readings")
+        if wildcards.scale == jobs.JUDGED_AT
     ]
 
 
-def under_alternatives(wildcards):
+def of_alternatives(wildcards):
     """The comparisons of claims by default and under each alternative, if a figure draws them."""
     drawn = STUDIES[wildcards.study].figures[wildcards.figure].claims
-    return [
-        f"results/{wildcards.scale}/{name}/claim_checks.csv"
-        for name in ALTERNATIVES
-        if drawn and name.split("/")[0] == wildcards.study
-    ]
+    places = under(wildcards.study, "alternatives") if drawn else ()
+    return [f"results/{wildcards.scale}/{place}/claim_checks.csv" for place in places]
 
 
 def shown(wildcards):

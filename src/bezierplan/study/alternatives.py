@@ -11,6 +11,7 @@ from typing import Any
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.figures.panels.alternatives import FEW
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
@@ -66,7 +67,8 @@ def meaning(study: Study, values: dict[str, Any]) -> str:
 
 def is_judged(claim: Claim) -> bool:
     """Return whether a reading can turn a claim: its primary checks rest on runs, not on times."""
-    return all(check.experiments and not check.timed for check in claim.checks if check.primary)
+    primary = [with_work(check)[0] for check in claim.checks if check.primary]
+    return all(check.experiments and not check.timed for check in primary)
 
 
 def claims_of(study: Study, reading: ReadingEntry) -> list[Claim]:
@@ -120,9 +122,10 @@ def with_claims(study: Study, claims: list[Claim]) -> Study:
         for claim in claims
     ]
     experiments = dict(study.experiments)
+    checks = [check for claim in own for check in in_variant(claim.checks, *variants(claim) * 2)]
     for name in experiments_of_claims(own):
-        checks = [check for claim in own for check in claim.checks if name in check.experiments]
-        experiments[name] = _with_checks(study, experiments[name], checks)
+        naming = [check for check in checks if name in check.experiments]
+        experiments[name] = _with_checks(study, experiments[name], naming)
     return study.but(claims=own, experiments=experiments)
 
 
