@@ -144,9 +144,8 @@ def models_in(annotation):
     [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)],
 )
 def test_no_key_of_a_file_is_unused(name, model):
-    used = {name, "readings", *keys(study_claims.ReadingEntry), "votes", "pairs"}.union(
-        {"reading_repeats"},
-        *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in KEYS),
+    used = {name, "fitted", "readings", *keys(study_claims.ReadingEntry)}.union(
+        *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in KEYS)
     )
     assert keys_of(model) - used == set()
 

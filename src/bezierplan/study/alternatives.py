@@ -92,18 +92,22 @@ def joint_readings(study: Study) -> dict[str, Study]:
 
 def single_alternatives(study: Study) -> dict[str, Study]:
     """Return the study with the claims of which a figure draws all alternatives, by default and
-    under each alternative that no sentence excludes, with few runs, by the name of the folder of
-    its results; nothing without such a figure.
+    under each alternative that no sentence excludes and that changes some of their runs, with few
+    runs, by the name of the folder of its results; nothing without such a figure.
     """
     drawn = {claim for figure in study.figures.values() for claim in figure.claims}
     claims = [claim for claim in study.claims if claim.id in drawn]
     if not claims:
         return {}
     few = with_few_runs(with_claims(study, claims))
+    contents = [few.experiments[name] for name in experiments_of_claims(few.claims)]
+    methods = {method for content in contents for method in content.methods}
+    homes = {few.problems[name].workspace for content in contents for name in content.problems}
     return {DEFAULT: few} | {
         folder_of(each.id, value): under(few, {each.id: value})
         for each in study.assumptions
-        if (each.setting or each.workspace) and not each.excluded_by
+        if methods.intersection(study.concerned(each)) or homes.intersection(each.workspace)
+        if not each.excluded_by
         for value in each.alternatives
     }
 

@@ -276,14 +276,16 @@ def figure(study: Study, scale: str, figure: str) -> FigureFiles:
 
 
 def _every_alternative(study: Study) -> list[dict[str, str]]:
-    """What each single alternative is: the assumption, its detail, the value."""
+    """Return what the default and each single alternative is: assumption, its detail, value."""
     details = {each.id: each.detail for each in study.assumptions}
-    every = (own.values for own in alternatives.single_alternatives(study).values())
-    return [
-        {"assumption": name, "detail": details.get(name, ""), "value": str(value)}
-        for values in every
-        for name, value in (values or {"": alternatives.DEFAULT}).items()
-    ]
+    default = alternatives.DEFAULT
+    rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
+    for own in alternatives.single_alternatives(study).values():
+        rows += [
+            {"assumption": name, "detail": details[name], "value": str(value)}
+            for name, value in own.values.items()
+        ]
+    return rows
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:

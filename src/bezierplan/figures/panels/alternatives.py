@@ -30,11 +30,14 @@ _ROW, _GAP, _WIDTH = 0.125, 0.06, 2.7
 _LETTERS = 50
 
 _LOOKS = {
-    "+": style.mark("o", 3.5, style.BLUE, label="supports the claim"),
+    "+": style.mark("o", 3.5, style.BLUE, label="the claim holds"),
     "?": style.mark("o", 3.5, style.BLACK, markerfacecolor=style.FREE, label="not decided"),
     "0": style.mark("s", 3.2, style.BLACK, markerfacecolor=style.FREE, label="too small to matter"),
-    "-": style.mark("X", 4.2, style.RED, label="contradicts the claim"),
+    "-": style.mark("X", 4.2, style.RED, label="the opposite holds"),
 }
+
+# Shares in words; an event in some runs needs any.
+_SHARES = {"all": 1.0, "some": 0.0, "none": 0.0, "as printed": "nan"}
 
 
 class Options(Panel):
@@ -68,24 +71,21 @@ def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
         columns=["assumption", "detail", "value", *_COMPARED, "effect", "low95", "high95", "mark"]
     )
     moved = (frame["effect"] - frame["effect"].iloc[0]).abs().fillna(np.inf)
-    frame["moved"] = moved.groupby(frame["assumption"]).transform("max")
-    frame.loc[frame["assumption"] == "", "moved"] = np.inf
-    first = frame["assumption"].ne("")
-    order = frame.assign(first=first).sort_values(
-        ["first", "moved", "assumption", "effect"], ascending=[True, False, True, True]
-    )
-    return order.drop(columns=["first", "moved"])
+    by = {"moved": moved.groupby(frame["assumption"]).transform("max"), "later": frame.index > 0}
+    ascending = {"later": True, "moved": False, "assumption": True, "effect": True}
+    order = frame.assign(**by).sort_values([*ascending], ascending=[*ascending.values()])
+    return order.drop(columns=[*by])
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows from top to bottom: in words at the left, what is open and its value."""
     default = frame.iloc[0]
-    groups = [own for _, own in frame.groupby(frame["assumption"].fillna(""), sort=False)]
+    groups = [own for _, own in frame.groupby("assumption", sort=False)]
     names = frame["value"].astype(str).str.replace("_", " ")
     beside = 4 + 4.1 * names.str.len().max()
     top, places = 0.0, []
     for own in groups:
-        lines = textwrap.wrap(str(own["detail"].iloc[0]), _LETTERS)
+        lines = textwrap.wrap(own["detail"].iloc[0], _LETTERS)
         rows = max(len(own), len(lines))
         first = top + (rows - len(own)) / 2
         places += [first + 0.5 + number for number in range(len(own))]
@@ -99,18 +99,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             va="center",
             linespacing=1.05,
         )
+        if places[len(own) :]:
+            axes.axhline(top - _GAP / _ROW / 2, color="0.88", linewidth=0.5, zorder=0)
         top += rows + _GAP / _ROW
-        axes.axhline(top - _GAP / _ROW / 2, color="0.88", linewidth=0.5, zorder=0)
     at = np.array(places)
     axes.set_yticks(at, names)
     axes.tick_params(axis="y", length=0)
     axes.set_ylim(top, -_GAP / _ROW)
     band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
     axes.axvspan(default["low95"], default["high95"], **band)
-    is_share = default["relation"] in ("in", "in at_least", "in at_most")
-    needed = float(default["other"]) if is_share else 0.0
+    is_share = default["relation"].startswith("in")
     label = "share that the claim needs" if is_share else "no difference"
-    axes.axvline(needed, **style.BOUND, label=label)
+    needed = _SHARES.get(default["other"], default["other"]) if is_share else 0.0
+    axes.axvline(float(needed), **style.BOUND, label=label)
     axes.hlines(at, frame["low95"], frame["high95"], color="0.35", linewidth=0.8)
     axes.plot([], [], **style.INTERVAL)
     marks = frame["mark"].fillna("?").to_numpy()
@@ -125,7 +126,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.grid(visible=True, axis="x")
     axes.set_xlabel(_name_effect(default, is_share, scene))
     counts = [
-        f"{(marks == mark).sum()} {look['label']}"
+        f"{look['label']}: {(marks == mark).sum()}"
         for mark, look in _LOOKS.items()
         if (marks == mark).any()
     ]
@@ -133,7 +134,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         "",
         f"one row for each alternative, alone, of at most {FEW} runs of a method under a "
         f"condition; the comparison that decides {options.claim}",
-        f"of {len(frame)} rows {', '.join(counts)}",
+        f"of {len(frame)} rows, {', '.join(counts)}",
     )
 
 
