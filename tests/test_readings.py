@@ -7,6 +7,8 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis.claims import by_reading
+from bezierplan.analysis.outcome import outcome
+from bezierplan.places import TREE
 from bezierplan.study import alternatives, jobs
 
 STUDIES = studies()
@@ -89,6 +91,17 @@ def test_alternatives_have_few_runs_and_none_is_excluded():
             made = chunk(few, name, few.experiments[name].methods[0])
             layouts = max(place.get("layout", 0) for place in made.problems.values()) + 1
             assert made.repeats[1] * layouts <= 100
+
+
+def test_a_printed_statistic_is_of_as_many_runs_of_ours_or_its_table_says_of_which_it_is():
+    """The third rule for a default reading (docs/verdicts.in.md)."""
+    numbers = pd.read_csv(TREE / outcome.KEPT / "numbers_papers_size.csv").query("primary")
+    printed = numbers[["n_published", "n_asked"]].min(axis=1).fillna(1)
+    fewer = numbers[numbers["n_ours"] < printed]
+    for (key, table), rows in fewer.groupby(["study", "table"]):
+        note = STUDIES[key].tables[table].note or ""
+        names = [STUDIES[key].labels.get(each, each) for each in rows["method"].unique()]
+        assert [name for name in names if name not in note] == [], f"{key}: {table}: {note}"
 
 
 # Claims

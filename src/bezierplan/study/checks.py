@@ -484,6 +484,9 @@ class Checks:
                 if other := governed.get(place):
                     raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
                 governed[place] = key
+        for other in study.readings:
+            if other.values == reading.values and other is not reading:
+                raise Fault(f"values: {other.name} has the same; expected one for all claims")
         claims = {claim.id: claim for claim in study.claims}
         for claim in set(reading.claims) - self.invalid:
             check_known(claim, claims, "claims")
