@@ -135,23 +135,18 @@ class Checks:
             self.prints()
         with self.at(relative(study.folder / "layout.yaml")):
             check_all(study.layout, {**study.tables, **study.figures}, "layout")
-        for section, entries, work in (
-            ("claims", study.claims, self.claim),
-            ("assumptions", study.assumptions, self.assumption),
+        for file, section, entries, work in (
+            ("claims", "claims", [(e.id, e) for e in study.claims], self.claim),
+            ("assumptions", "assumptions", [(e.id, e) for e in study.assumptions], self.assumption),
+            ("assumptions", "readings", [(e.folder, e) for e in study.readings], self.reading),
         ):
-            with self.at(relative(study.folder / f"{section}.yaml")):
-                self.each(section, {entry.id: entry for entry in entries}, work)
+            with self.at(relative(study.folder / f"{file}.yaml")):
                 # Results are looked up by it.
-                ids = [entry.id for entry in entries]
-                for identity in ids:
-                    if ids.count(identity) > 1:
-                        raise Fault(f"{section}: {identity}: another one has this id already")
-        with self.at(relative(study.folder / "assumptions.yaml")):
-            self.each("readings", {entry.name: entry for entry in study.readings}, self.reading)
-            names = [entry.folder for entry in study.readings]
-            for name in names:
-                if names.count(name) > 1:
-                    raise Fault(f"readings: {name}: another one has this name already")
+                names = [name for name, _ in entries]
+                for name in names:
+                    if names.count(name) > 1:
+                        raise Fault(f"{section}: {name}: another one has this id already")
+                self.each(section, dict(entries), work)
         with self.at(relative(study.folder / "assumptions.yaml"), "fitted"):
             check_all(study.fitted.keys() - self.invalid, study.with_published(), "table")
             for table, fitted in study.fitted.items():
