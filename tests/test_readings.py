@@ -115,7 +115,7 @@ CLAIMS["verdict"] = ["supported", "undecided", "supported", "undecided"]
 def under(**verdicts):
     """Verdicts on C1 by reading, as `with_dependence` takes them."""
     return {
-        name: by_reading.Judged(pd.DataFrame({"id": ["C1"], "verdict": [verdict]}), None)
+        name: by_reading.ClaimTables(pd.DataFrame({"id": ["C1"], "verdict": [verdict]}), None)
         for name, verdict in verdicts.items()
     }
 
@@ -184,8 +184,8 @@ def test_a_claim_of_two_checks_has_the_verdict_on_each(tmp_path):
     rows = by_reading.by_check(
         [claim],
         {
-            by_reading.DEFAULT: by_reading.Judged(judged, checks),
-            "zero": by_reading.Judged(judged, read),
+            by_reading.DEFAULT: by_reading.ClaimTables(judged, checks),
+            "zero": by_reading.ClaimTables(judged, read),
         },
     )
     assert rows["reading"].to_list() == ["default"] * 2 + ["zero"] * 2

@@ -256,7 +256,7 @@ class Claims(Job):
             self.write(judged, output_files.claims)
             return
         under = {
-            name: by_reading.Judged(pd.read_csv(claims), by_reading.read_checks(own))
+            name: by_reading.ClaimTables(pd.read_csv(claims), by_reading.read_checks(own))
             for name, claims, own in zip(
                 self.readings, input_files.readings, input_files.checks, strict=True
             )
@@ -264,7 +264,7 @@ class Claims(Job):
         names = sentences.variants_named(self.study.claims, self.study.labels)
         told = by_reading.with_dependence(judged, under, self.readings, names)
         self.write(told, output_files.claims)
-        default = {by_reading.DEFAULT: by_reading.Judged(judged, checks)}
+        default = {by_reading.DEFAULT: by_reading.ClaimTables(judged, checks)}
         self.write(by_reading.by_check(self.study.claims, default | under), output_files.by_reading)
 
 

@@ -121,16 +121,16 @@ def with_claims(study: Study, claims: list[Claim]) -> Study:
     """Return the study with some claims alone, of which it has the primary checks in the primary
     variant, and with no other runs than these checks name.
     """
-    own = [
+    claims = [
         claim.in_primary_variant().but(checks=[check for check in claim.checks if check.primary])
         for claim in claims
     ]
     experiments = dict(study.experiments)
-    checks = [check for claim in own for check in in_variant(claim.checks, *variants(claim) * 2)]
-    for name in experiments_of_claims(own):
+    checks = [check for claim in claims for check in in_variant(claim.checks, *variants(claim) * 2)]
+    for name in experiments_of_claims(claims):
         naming = [check for check in checks if name in check.experiments]
         experiments[name] = _with_checks(study, experiments[name], naming)
-    return study.but(claims=own, experiments=experiments)
+    return study.but(claims=claims, experiments=experiments)
 
 
 def _with_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) -> Experiment:

@@ -459,7 +459,7 @@ class Checks:
         """Its values are alternatives that a run can have, all at once, and its claims rest on
         runs.
         """
-        study, governed = self.study, {}
+        study, settled = self.study, {}
         known = {each.id: each for each in study.assumptions}
         for key, value in reading.values.items():
             if key in self.invalid:
@@ -476,9 +476,9 @@ class Checks:
                 )
             for method in study.concerned(assumption):
                 place = (method, assumption.setting, *assumption.problems)
-                if other := governed.get(place):
+                if other := settled.get(place):
                     raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
-                governed[place] = key
+                settled[place] = key
         for other in study.readings:
             if other.values == reading.values and other is not reading:
                 raise Fault(f"values: {other.name} has the same; expected one for all claims")
@@ -491,7 +491,7 @@ class Checks:
                 )
         if self.complete and not self.invalid:
             changed = under(study, reading.values)
-            for method, *_ in governed:
+            for method, *_ in settled:
                 with self.at("values", method):
                     self.settings(changed, method)
 

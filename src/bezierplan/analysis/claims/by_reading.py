@@ -37,7 +37,7 @@ comparisons are +; and the comparison that speaks most against it.
 """
 
 
-class Judged(NamedTuple):
+class ClaimTables(NamedTuple):
     """The claims and checks of a study under one reading, with `columns.CLAIM_COLUMNS` and
     `columns.CHECK_COLUMNS`.
     """
@@ -53,7 +53,7 @@ def read_checks(file: str) -> pd.DataFrame:
 
 def with_dependence(
     claims: pd.DataFrame,
-    readings: Mapping[str, Judged],
+    readings: Mapping[str, ClaimTables],
     meanings: Mapping[str, str],
     names: Mapping[str, str],
 ) -> pd.DataFrame:
@@ -94,7 +94,7 @@ def _named(names: list[str]) -> str:
     return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} variants"
 
 
-def by_check(claims: Iterable[Claim], readings: Mapping[str, Judged]) -> pd.DataFrame:
+def by_check(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
     """Return a row for each claim, each of its primary checks, and each reading under which it was
     judged, with `COLUMNS`.
     """

@@ -79,63 +79,56 @@ def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows from top to bottom: in words at the left, what is open and its value."""
-    default = frame.iloc[0]
-    groups = [own for _, own in frame.groupby("assumption", sort=False)]
-    names = frame["value"].astype(str).str.replace("_", " ")
-    beside = 4 + 4.1 * names.str.len().max()
-    top, places = 0.0, []
-    for own in groups:
-        lines = textwrap.wrap(own["detail"].iloc[0], _LETTERS)
-        rows = max(len(own), len(lines))
-        first = top + (rows - len(own)) / 2
-        places += [first + 0.5 + number for number in range(len(own))]
-        axes.annotate(
-            "\n".join(lines),
-            (0, top + rows / 2),
-            (-beside, 0),
-            xycoords=axes.get_yaxis_transform(),
-            textcoords="offset points",
-            ha="right",
-            va="center",
-            linespacing=1.05,
-        )
-        if places[len(own) :]:
-            axes.axhline(top - _GAP / _ROW / 2, color="0.88", linewidth=0.5, zorder=0)
-        top += rows + _GAP / _ROW
-    at = np.array(places)
-    axes.set_yticks(at, names)
-    axes.tick_params(axis="y", length=0)
-    axes.set_ylim(top, -_GAP / _ROW)
+    default, effect = frame.iloc[0], frame["effect"].to_numpy()
+    places = _name_rows(axes, frame)
     band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
     axes.axvspan(default["low95"], default["high95"], **band)
     is_share = default["relation"].startswith("in")
     label = "share that the claim needs" if is_share else "no difference"
     needed = _SHARES.get(default["other"], default["other"]) if is_share else 0.0
     axes.axvline(float(needed), **style.BOUND, label=label)
-    axes.hlines(at, frame["low95"], frame["high95"], color="0.35", linewidth=0.8)
+    axes.hlines(places, frame["low95"], frame["high95"], color="0.35", linewidth=0.8)
     axes.plot([], [], **style.INTERVAL)
-    marks = frame["mark"].fillna("?").to_numpy()
+    marks, counts = frame["mark"].fillna("?").to_numpy(), []
     for mark, look in _LOOKS.items():
-        if (own := marks == mark).any():
-            axes.plot(frame["effect"].to_numpy()[own], at[own], zorder=3, **look)
-    for place in at[frame["effect"].isna().to_numpy()]:
-        axes.annotate(
-            "no value", (0.5, place), xycoords=axes.get_yaxis_transform(), ha="center", va="center"
-        )
-    axes.set_box_aspect((top * _ROW + _GAP) / _WIDTH)
+        if (chosen := marks == mark).any():
+            axes.plot(effect[chosen], places[chosen], zorder=3, **look)
+            counts.append(f"{look['label']}: {chosen.sum()}")
+    middle = {"xycoords": axes.get_yaxis_transform(), "ha": "center", "va": "center"}
+    for place in places[np.isnan(effect)]:
+        axes.annotate("no value", (0.5, place), **middle)
     axes.grid(visible=True, axis="x")
     axes.set_xlabel(_name_effect(default, is_share, scene))
-    counts = [
-        f"{look['label']}: {(marks == mark).sum()}"
-        for mark, look in _LOOKS.items()
-        if (marks == mark).any()
-    ]
     return Note(
         "",
         f"one row for each alternative, alone, of at most {FEW} runs of a method under a "
         f"condition; the comparison that decides {options.claim}",
         f"of {len(frame)} rows, {', '.join(counts)}",
     )
+
+
+def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
+    """Write what is open and its values beside the axes, shape them, and return where rows are."""
+    names = frame["value"].astype(str).str.replace("_", " ")
+    beside = 4 + 4.1 * names.str.len().max()
+    words = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points", "ha": "right"}
+    top, gap, places = 0.0, _GAP / _ROW, []
+    for _, values in frame.groupby("assumption", sort=False):
+        if top:
+            axes.axhline(top - gap / 2, color="0.88", linewidth=0.5, zorder=0)
+        lines = textwrap.wrap(values["detail"].iloc[0], _LETTERS)
+        rows = max(len(values), len(lines))
+        text = "\n".join(lines)
+        place = (0, top + rows / 2)
+        axes.annotate(text, place, (-beside, 0), va="center", linespacing=1.05, **words)
+        places.append(top + (rows - len(values) + 1) / 2 + np.arange(len(values)))
+        top += rows + gap
+    rows = np.concatenate(places)
+    axes.set_yticks(rows, names)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(top, -gap)
+    axes.set_box_aspect((top + gap) * _ROW / _WIDTH)
+    return rows
 
 
 def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
