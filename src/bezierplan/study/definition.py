@@ -58,10 +58,6 @@ class Study(Experiments, ArtefactsFile):
                 settings[each.setting] = self.values[each.id]
         return settings
 
-    def resolved(self, method: str) -> dict[str, Any]:
-        """Return all settings of a method, by name, also those that `values` change."""
-        return super().resolved(method) | self.changed(method)
-
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
