@@ -103,7 +103,7 @@ def home(scale, study, experiment, method=""):
 
 
 DEFAULTS = {"readings": "{}", "alternatives": f"{{}}/alternatives/{alternatives.DEFAULT}"}
-BELOW = "/(?:" + "|".join(UNDER) + ")/[^/]+"
+BELOW = "(?:/(?:" + "|".join(UNDER) + ")/[^/]+)"
 """Pattern of a place below that of a study."""
 
 
