@@ -20,7 +20,7 @@ def plan(
     stall_limit=10,  # Section 4.2.1
     c1=1.5,  # C1, C2
     c2=1.5,
-    inertia=1.0,  # w
+    inertia=0.7298,  # w, which is not printed
     control_points=3,  # Section 5.1
     samples=100,
     beta=100.0,
@@ -42,14 +42,13 @@ def plan(
     v, p, p_fitness = np.zeros_like(x), x.copy(), np.full(particles, np.inf)
     G, G_fitness, history = None, np.inf, []
     for t in range(iterations + 1):  # line 2
-        if t > 0:
-            r1, r2 = moves.random(2)
-            if chaotic_term == "social":
-                r2 = zeta[t - 1]
-            else:
-                r1 = zeta[t - 1]
         for i in range(particles):  # line 3
             if t > 0:  # line 11 of the iteration before
+                r1, r2 = moves.random(2)
+                if chaotic_term == "social":
+                    r2 = zeta[t - 1]
+                else:
+                    r1 = zeta[t - 1]
                 v[i] = inertia * v[i] + c1 * r1 * (p[i] - x[i]) + c2 * r2 * (G - x[i])  # eq. 8
                 x[i] = np.clip(x[i] + v[i], low, high)  # eq. 7; the velocity stays
             value = fitness(x[i], problem, weights, circles, beta)  # line 4

@@ -221,10 +221,15 @@ class Pick(Model):
         description="in addition to one of these, the name of a metric: "
         "only runs that have more than 0 of it count",
     )
+    layout: Quantity = Field(
+        None,
+        description="in addition to one of these, a column of numbers of the runs table: "
+        "only the layout counts, the first, in whose runs it has the most different values",
+    )
 
     @model_validator(mode="after")
     def _check_one(self) -> Pick:
-        ways = self.model_fields_set - {"having"}
+        ways = self.model_fields_set - {"having", "layout"}
         if len(ways) != 1:
             raise wrong(
                 f"{len(ways)} keys; expected {{lowest: column}}, "
@@ -235,7 +240,8 @@ class Pick(Model):
 
 PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that have more than 0 of it"
+    "with having: metric, only of those that have more than 0 of it, and with layout: column, only "
+    "of the layout with the most different values of it"
 )
 
 
