@@ -224,7 +224,7 @@ class Pick(Model):
     layout: Quantity = Field(
         None,
         description="in addition to one of these, a column of numbers of the runs table: "
-        "only the layout counts, the first, in whose runs it has the most different values",
+        "only the layout counts in whose runs it varies most",
     )
 
     @model_validator(mode="after")
@@ -241,7 +241,7 @@ class Pick(Model):
 PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
     "with having: metric, only of those that have more than 0 of it, and with layout: column, only "
-    "of the layout with the most different values of it"
+    "of the layout in which that varies most"
 )
 
 

@@ -177,9 +177,9 @@ class Options(RunsPanel):
         shown = super().source(sources)
         if self.pick.layout is None:
             return shown
-        runs = sources.results[self.experiment].runs
-        different = runs[self.pick.layout].round(9).groupby(runs["layout"]).nunique()
-        return shown._replace(runs=select(shown.runs, {"layout": different.idxmax()}))
+        values = sources.results[self.experiment].runs.groupby("layout")[self.pick.layout]
+        layout = (values.max() - values.min()).idxmax()
+        return shown._replace(runs=select(shown.runs, {"layout": layout}))
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
