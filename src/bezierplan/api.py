@@ -405,7 +405,7 @@ def plan(
     (True, 8.416, 0.0015)
     >>> wide = plan(problem, robot_radius=0.5)
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
-    (True, 9.156, 0.5)
+    (True, 9.247, 0.5)
     """
     if not _are_numbers(seed) or seed < 0 or seed % 1:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
