@@ -418,7 +418,8 @@ def test_the_default_of_an_assumption_is_what_the_study_uses():
     study = shared("ma2020")
     own = {each.id: alternatives.default_of(study, each) for each in study.assumptions}
     assert own["O2"] == study.settings["control_points"]
-    assert set(own["O14h"].values()) == {study.problems["environment2"].settings["generations"]}
+    assert own["O14h"]["ga"] == study.methods["ga"].settings["generations"]
+    assert own["O7"]["bca"] == study.settings["elitism"]
     turned = study.but(settings=study.settings | {"control_points": 5})
     assert not checks.Checks(turned).check()
     first = next(each for each in study.assumptions if each.id == "O2")
