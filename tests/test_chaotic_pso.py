@@ -185,7 +185,15 @@ def test_search_is_that_of_a_plain_reference(changes):
         ({}, 9.237),
         ({"chaotic_term": "cognitive"}, 9.296),
         ({"chaotic_term": "social"}, 9.589),
-        ({"chaotic_term": "social", "inertia": 1.0, "inertia_damping": 0.98, "velocity_limit": 0.1}, 8.662),
+        (
+            {
+                "chaotic_term": "social",
+                "inertia": 1.0,
+                "inertia_damping": 0.98,
+                "velocity_limit": 0.1,
+            },
+            8.662,
+        ),
     ],
     ids=["PSO", "CPSO-I", "CPSO-II", "CPSO-II damped"],
 )

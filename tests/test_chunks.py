@@ -45,7 +45,7 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
 
 @pytest.mark.parametrize(
     ("fewer", "numbers"),
-    [({"particles": {40: 100, 60: 100}}, 10), ({"method": {"cpso2_singer": 100}}, 1)],
+    [({"particles": {"40": 100, "60": 100}}, 10), ({"method": {"cpso2_singer": 100}}, 1)],
 )
 def test_conditions_with_fewer_runs_leave_the_later_chunks(fewer, numbers):
     """1,000 runs with each of one to ten control points and three numbers of particles."""
