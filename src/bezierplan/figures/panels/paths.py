@@ -91,7 +91,7 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
     if pick.having is not None:
         runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
-    run = pick_run(runs, pick.plain("having"))
+    run = pick_run(runs, pick.plain("having", "layout"))
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
     return run, names | {
@@ -169,8 +169,17 @@ class Options(RunsPanel):
     )
 
     def source(self, sources: Sources) -> Results | None:
-        """Runs; nothing for an explicit path."""
-        return None if self.experiment is None else super().source(sources)
+        """Runs, of one layout if one is picked; nothing for an explicit path."""
+        from bezierplan.analysis.results import select
+
+        if self.experiment is None:
+            return None
+        shown = super().source(sources)
+        if self.pick.layout is None:
+            return shown
+        values = sources.results[self.experiment].runs.groupby("layout")[self.pick.layout]
+        layout = (values.max() - values.min()).idxmax()
+        return shown._replace(runs=select(shown.runs, {"layout": layout}))
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
