@@ -28,7 +28,7 @@ import bezierplan as bp
 from bezierplan.running.guard import contract
 picture = ("......", ".S..T.", "..#...", "......")
 rooms = [contract.drawn_problem(kind, "room", picture) for kind in ("grid", "circles", "polygons")]
-for name in [*bp.methods(), "prm"]:
+for name in [*bp.methods(all=True), "prm"]:
     for problem in rooms:
         try:
             print(bp.plan(problem, name).method, "planned")
@@ -127,7 +127,7 @@ def test_the_core_plans_by_a_paper_s_method_and_says_what_it_lacks(away):
 def test_the_core_plans_once_by_every_method(away):
     said = shell(away, f"python -c {shlex.quote(EVERY_METHOD)}", away / "every", core=True)
     planned = re.findall("^(.*) planned$", said, flags=re.M)
-    assert planned == [*bezierplan.methods(), "prm"]
+    assert planned == [*bezierplan.methods(all=True), "prm"]
     assert "song2016/smoth: unknown; did you mean song2016/smooth?" in said
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.planners import planner_module, planner_settings
+from bezierplan.planners import Plan, planner_module, planner_settings
 from bezierplan.running import planning
 from bezierplan.running.answer import restored
 from bezierplan.workspaces import robot
@@ -56,6 +57,11 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     }
 
 
+def of_planner(plan: Plan) -> dict[str, Any]:
+    """Return the fields of `api.Answer` that are the planner's own."""
+    return {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
+
+
 def of_run(results: Results, name: str) -> dict[str, Any]:
     """The fields of `api.Answer` for the results of one run, by its name."""
     row, (study, _, _, method, _) = results.runs.iloc[0], name.split("/")
@@ -74,12 +80,11 @@ def of_run(results: Results, name: str) -> dict[str, Any]:
 
 
 def lines(answer: Any) -> dict[str, str]:
-    """What to print of an `api.Answer`, by name."""
-    unit, settings = answer.problem.workspace.unit, answer.settings
-    words = {
-        "planner": answer.method,
-        "settings": ", ".join(f"{name} {value}" for name, value in settings.items()) or "none",
-    }
+    """What to print of an `api.Judgement` or an `api.Answer`, by name."""
+    unit, words = answer.problem.workspace.unit, {}
+    if method := getattr(answer, "method", ""):
+        settings = ", ".join(f"{name} {value}" for name, value in answer.settings.items())
+        words = {"planner": method, "settings": settings or "none"}
     if answer.robot_radius:
         words["robot radius"] = f"{answer.robot_radius:g} {unit}"
     words["shortest path"] = f"{answer.shortest:.6g} {unit}"
@@ -87,9 +92,15 @@ def lines(answer: Any) -> dict[str, str]:
         words["path"] = f"none ({answer.stop})"
     else:
         words |= _of_path(answer, unit)
-    if not math.isnan(answer.cpu_s):
-        words["CPU time"] = f"{answer.cpu_s:.3g} s"
+    if not math.isnan(seconds := getattr(answer, "cpu_s", math.nan)):
+        words["CPU time"] = f"{seconds:.3g} s"
     return words
+
+
+def rows(answer: Any) -> str:
+    """Return `lines` as a table of HTML."""
+    lined = lines(answer).items()
+    return f"<table>{''.join(f'<tr><th>{name}<td>{escape(text)}' for name, text in lined)}</table>"
 
 
 def _of_path(answer: Any, unit: str) -> dict[str, str]:
@@ -98,12 +109,11 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
         "length": f"{answer.length:.6g} {unit}",
         "curvature": f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}",
     }
-    if not math.isnan(answer.turning_radius):
-        wish, radius = answer.settings["turning_radius"], answer.turning_radius
-        kept = planning.keeps_radius(wish, radius)
-        words["turning radius"] = f"{wish:.6g} {unit} asked" + (
-            " and kept" if kept else f", {radius:.6g} {unit} kept: no room for more"
-        )
+    radius = getattr(answer, "turning_radius", math.nan)
+    if not math.isnan(radius):
+        wish = answer.settings["turning_radius"]
+        less = "" if planning.keeps_radius(wish, radius) else f"; no room for {wish:.6g} {unit}"
+        words["turning radius"] = f"{radius:.6g} {unit}{less}"
     words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
     if answer.feasible:
         words["length"] += f", {_digits(100 * max(answer.gap, 0.0), 3)} % above the shortest path"

@@ -3,9 +3,10 @@ of all.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -68,33 +69,48 @@ def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
     )
 
 
-def planned(
-    name: str,
-    plan: Callable[..., Any],
-    parts: Sequence[Problem],
-    settings: dict[str, Any],
-    seed: int,
-    file: str,
-) -> tuple[Plan, float]:
-    """What a planner answers to all legs, as plain values (`answer.accepted`), and its CPU seconds.
+class Run(NamedTuple):
+    """A call of a planner for each leg of a problem. label: how messages about it begin."""
 
-    name: how messages about the planner begin. plan: its function. file: the path of its file,
-    which is executed in a process of its own; empty if it is not given as one. Raises
-    PlannerFailure for an answer that is none.
+    label: str
+    legs: Sequence[Problem]
+    settings: dict[str, Any]
+    seed: int
+
+
+def planned(
+    plan: Callable[..., Any], runs: Sequence[Run], file: str
+) -> Iterator[tuple[Plan, float]]:
+    """Yield what a planner answers in each run, as plain values (`answer.accepted`), and its CPU
+    seconds.
+
+    plan: its function. file: the path of its file, which is executed in a process of its own; empty
+    if it is not given as one. Raises PlannerFailure for an answer that is none.
     """
-    if file:
-        problems = {str(number): part for number, part in enumerate(parts)}
-        tasks = [worker.Task(name, each, seed, settings) for each in problems]
-        made = [*process.isolated_replies(worker.Work(file, problems), tasks, (), name)]
-        answers, seconds = [each.result for each in made], sum(each.cpu for each in made)
-    else:
-        answers, seconds, _ = worker.timed(
-            lambda: [plan(part, np.random.default_rng(seed), **settings) for part in parts]
-        )
-    taken = {*TAKEN, *settings}
-    with answer.of(name):
-        accepted = [answer.accepted(plan, part, taken) for plan, part in zip(answers, parts)]
-    return joined(accepted), seconds
+    problems, tasks = {}, []
+    for run in runs:
+        for leg in run.legs:
+            problems[f"{len(tasks)}"] = leg
+            tasks.append(worker.Task(run.label, f"{len(tasks)}", run.seed, run.settings))
+    replies = (
+        process.isolated_replies(worker.Work(file, problems), tasks, (), tasks[0].name)
+        if file
+        else _replies(plan, problems, tasks)
+    )
+    for run in runs:
+        made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
+        with answer.of(run.label):
+            legs = [answer.accepted(each.result, leg, taken) for each, leg in zip(made, run.legs)]
+        yield joined(legs), sum(each.cpu for each in made)
+
+
+def _replies(
+    plan: Callable[..., Any], problems: Mapping[str, Problem], tasks: Iterable[worker.Task]
+) -> Iterator[worker.Reply]:
+    """Yield what a planner's function answers to tasks in this process."""
+    for number, task in enumerate(tasks):
+        once = partial(plan, problems[task.problem], task.generator(), **task.settings)
+        yield worker.Reply(number, *worker.timed(once), True)
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
