@@ -9,6 +9,7 @@ one.
 import re
 import time
 from datetime import timedelta
+from itertools import takewhile
 from logging import LogRecord
 from pathlib import Path
 
@@ -79,12 +80,13 @@ class LogHandler(RichHandler):
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def reason_of(self, job: int) -> str:
-        """Why a job failed, as the last line of its log says; if it does not, where the log is."""
+        """Why a job failed, as the last lines of its log say; if they do not, where the log is."""
         logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
         for log in map(Path, logs):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
-            if lines and REASON in lines[-1]:
-                return lines[-1].partition(REASON)[2]
+            last = [*takewhile(lambda line: REASON in line, reversed(lines))]
+            if last:
+                return "\n".join(line.partition(REASON)[2] for line in reversed(last))
         return f"job {job} failed, and its log does not say why (log: {', '.join(logs)})"
 
     def close(self) -> None:

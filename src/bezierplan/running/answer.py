@@ -29,6 +29,8 @@ MOST_BLENDED = 1_000
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 _LARGEST_WHOLE = 2**63 - 1
+# Beside fractions in a column, larger whole numbers are not exact.
+_EXACT = 2**53
 _TRUTHS = (bool, np.bool_)
 
 NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
@@ -81,6 +83,31 @@ def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan
     plan = plain(answer, names)
     check_ends(plan.path, problem)
     return plan
+
+
+def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
+    """Raise Unfit for columns of a planner's own that are others than those of its first run; or,
+    where they are to be finite, for an infinite number.
+    """
+    own, wanted = _kinds(plan), _kinds(first)
+    for name in wanted | own:
+        if own.get(name) != wanted.get(name):
+            raise Unfit(
+                f"column {name}: {own.get(name, 'missing')}; expected, as in the first run: "
+                f"{wanted.get(name, 'none')}"
+            )
+        if finite and math.isinf(plan.extra[name]):
+            raise Unfit(
+                f"column {name}: {plan.extra[name]}; expected a finite number, or nan for none"
+            )
+
+
+def _kinds(plan: Plan) -> dict[str, str]:
+    """Return what the columns of a planner's own hold, by name, in words."""
+    return {
+        name: "a truth" if isinstance(value, _TRUTHS) else "a number"
+        for name, value in plan.extra.items()
+    }
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:
@@ -205,8 +232,8 @@ def _extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
 def _column(name: str, value: Any) -> float | bool:
     if isinstance(value, _TRUTHS):
         return bool(value)
-    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _LARGEST_WHOLE):
-        raise Unfit(f"extra: {name}: expected a number within 64 bits, or a truth")
+    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _EXACT):
+        raise Unfit(f"extra: {name}: expected a number, a whole one of at most 2**53, or a truth")
     return int(value) if isinstance(value, Integral) else float(value)
 
 
