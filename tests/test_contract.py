@@ -112,7 +112,7 @@ FAULTS_OF_RUNS = {
         "narrow",
         "return Plan(path, history[-1], True, evaluations, history, '', {'tries': True})",
         "plan",
-        "column tries: a truth; expected, as in the first run: a number",
+        "column tries: missing, or a truth and a number in two runs",
     ),
     "a column of another": (
         "start is target",

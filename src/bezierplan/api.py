@@ -19,7 +19,7 @@ import numpy as np
 from bezierplan.analysis import answers
 from bezierplan.figures import drawn_path, style
 from bezierplan.geometry import path_files, samples, shortest_paths
-from bezierplan.places import STUDIES
+from bezierplan.places import STUDIES, extra
 from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import planning
 from bezierplan.running import problems as problem_files
@@ -837,7 +837,8 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
-    from bezierplan.analysis.results import of_folder
+    with extra():
+        from bezierplan.analysis.results import of_folder
 
     return of_folder(File(folder), experiment).runs
 
@@ -860,7 +861,8 @@ def replay(run: str) -> Answer:
         States the unknown part of the name; a drive through a moving world has no single path and
         is replayed at the command line.
     """
-    from bezierplan.study import replays
+    with extra():
+        from bezierplan.study import replays
 
     reproduced = replays.replay(run, {key: _study(key) for key in _keys()})
     if reproduced.worlds:

@@ -1,6 +1,6 @@
 """Output of Snakemake while it works: in a terminal the rich logger's progress bars, without one a
-line every 15 seconds or less often. At the end: the place of the results, the time taken and the
-outcome, or for each failed job one line with the reason.
+line every 15 seconds or less often. At the end: what was made, where it is, and the time taken; or
+why jobs failed, a line for each fault.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
 one.
@@ -26,8 +26,12 @@ LOCKED = (
     "works, free it by `snakemake --unlock` and "
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
+NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
+"""How messages begin that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
+MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
+"""What is counted at the end, by the end of a file of it."""
 BETWEEN_LINES = 15.0
 """Least time between two lines of progress without a terminal, in seconds."""
 
@@ -37,6 +41,9 @@ class LogHandler(RichHandler):
         super().__post_init__()
         self.progress.columns += (MofNCompleteColumn(), TimeRemainingColumn())
         self.progress.speed_estimate_period = 24 * 3600  # the usual 30 s are shorter than a job
+        if not self.console.is_terminal:
+            # They would leave blank lines.
+            self.live_display.start = self.progress.stop = lambda: None
         self.started = self.last_line = time.monotonic()
         self.outputs: set[Path] = set()
         # By job, for one that succeeds when it is tried again has not failed; None: of no job.
@@ -58,7 +65,11 @@ class LogHandler(RichHandler):
             self.reasons[job] = reason
             return
         # A job's own log says why it failed, and where the rest of its account stands.
-        if fault == "RuleException" or (event is None and message.startswith("Elapsed time: ")):
+        if fault == "RuleException" or (event is None and message.startswith(NOISE)):
+            return
+        done = self.event_handler.completed == self.event_handler.total_jobs
+        if "Complete log" in message and done:
+            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -69,11 +80,6 @@ class LogHandler(RichHandler):
             self.reasons.pop(record.job_id, None)
             if not self.console.is_terminal:
                 self.show_progress()
-        elif (
-            "Complete log" in message
-            and self.event_handler.completed == self.event_handler.total_jobs
-        ):
-            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
 
     def say(self, *lines: str) -> None:
         for line in lines:
@@ -100,15 +106,22 @@ class LogHandler(RichHandler):
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
-            self.last_line = now
-            self.say(f"{done} of {total} jobs done, {in_hours(now - self.started)} elapsed")
+            self.last_line, taken = now, now - self.started
+            left = f", about {in_hours(taken * (total / done - 1))} left" if done < total else ""
+            share = f"{100 * done // total} %: {done} of {total} jobs"
+            self.say(f"{share}, {in_hours(taken)} elapsed{left}")
 
 
 def last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """Where the results are, how long it took, and last the page."""
+    """What was made, where the results are, how long it took, and last the page."""
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
-    lines = [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    counts = {
+        what: sum(file.name.endswith(ending) for file in outputs) for what, ending in MADE.items()
+    }
+    made = [f"{count} {what}{'s' * (count > 1)}" for what, count in counts.items() if count]
+    lines = [f"Made: {', '.join(made)}"] if made else []
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []

@@ -34,7 +34,7 @@ rule extended:
 # `extended` makes them too.
 rule readings:
     input:
-        of_readings("extended", READ, "readings"),
+        of_readings("extended", OF_SCALE["extended"], "readings"),
 
 
 # The report on the papers, for print: a page each, by the browser that the tests use.
@@ -61,6 +61,7 @@ for study in STUDIES:
             study
         input:
             files_in("full", "paper", study),
+            of_studies("full", "claims.csv", lambda own: own.key == study and own.claims),
 
     rule:
         name:

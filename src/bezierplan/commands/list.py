@@ -78,7 +78,9 @@ def _methods(study: Study) -> Rows:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
-        yield name, f"{planner}{variant}: {_sentence(planner_module(planner))}"
+        # Its own settings tell it apart from others of this planner.
+        own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
+        yield name, f"{planner}{variant}: {own or _sentence(planner_module(planner))}"
 
 
 def _settings(study: Study) -> Rows:

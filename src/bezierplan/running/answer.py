@@ -89,25 +89,18 @@ def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
     """Raise Unfit for columns of a planner's own that are others than those of its first run; or,
     where they are to be finite, for an infinite number.
     """
-    own, wanted = _kinds(plan), _kinds(first)
-    for name in wanted | own:
-        if own.get(name) != wanted.get(name):
-            raise Unfit(
-                f"column {name}: {own.get(name, 'missing')}; expected, as in the first run: "
-                f"{wanted.get(name, 'none')}"
-            )
-        if finite and math.isinf(plan.extra[name]):
-            raise Unfit(
-                f"column {name}: {plan.extra[name]}; expected a finite number, or nan for none"
-            )
-
-
-def _kinds(plan: Plan) -> dict[str, str]:
-    """Return what the columns of a planner's own hold, by name, in words."""
-    return {
-        name: "a truth" if isinstance(value, _TRUTHS) else "a number"
-        for name, value in plan.extra.items()
-    }
+    truths, wanted = (
+        {name: isinstance(value, _TRUTHS) for name, value in each.extra.items()}
+        for each in (plan, first)
+    )
+    if differing := dict(truths.items() ^ wanted.items()):
+        raise Unfit(
+            f"column {min(differing)}: missing, or a truth and a number in two runs; a table needs "
+            "the same columns in each row"
+        )
+    for name, value in plan.extra.items():
+        if finite and math.isinf(value):
+            raise Unfit(f"column {name}: {value}; expected a finite number, or nan for none")
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:

@@ -213,6 +213,7 @@ def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:
     from matplotlib.colors import ListedColormap
 
     flat = isinstance(home, Grid) and not home.shapes and home.heights is None
+    # Outlines of small cells would hide what they surround.
     if flat and home.occupied.size > _MOST_OUTLINES:
         colours = ListedColormap([style.FREE, style.OCCUPIED])
         axes.imshow(home.occupied, colours, origin="lower", extent=home.bounds, vmin=0, vmax=1)
@@ -258,12 +259,8 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
-    # Outlines of small cells would hide what they surround.
-    area = np.ptp(corners["x"]) * np.ptp(corners["y"])
-    dense = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
-    bare = {"edgecolor": "face", "rasterized": True} if dense else {}
     for part, own in cells.groupby("part"):
-        draw_cells(axes, own, _CELLS[part] | bare)
+        draw_cells(axes, own, _CELLS[part])
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or len(cells) else _OBSTACLE
