@@ -78,9 +78,9 @@ def _methods(study: Study) -> Rows:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
-        # Its own settings tell it apart from others of this planner.
         own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
-        yield name, f"{planner}{variant}: {own or _sentence(planner_module(planner))}"
+        what = filter(None, [_sentence(planner_module(planner)).rstrip("."), own])
+        yield name, f"{planner}{variant}: {'; '.join(what)}"
 
 
 def _settings(study: Study) -> Rows:

@@ -92,7 +92,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         check_known(f"{metric} {row['statistic']}", shown, f"{where}: metric and statistic")
         of_metric = metrics.unit(row["metric"], unit)
         share, least = row["statistic"] == "share", metrics.METRICS[metric].least
-        low = 0.0 if share or isinstance(least, str) else least
+        low = 0.0 if share or isinstance(least, str) else min(least, 0.0)
         for column, fits, wanted in (
             ("value", row["value"], "a number"),
             (

@@ -58,12 +58,13 @@ def read_config(config: Mapping[str, Any]) -> Folders:
 
 def on_page(scale_folder: str | Path) -> dict[str, str]:
     """Return the studies that the page in the folder of a scale shows, by name, each with the word
-    that names it in a configuration; none without such a page.
+    that names it in a configuration, as far as it has results; none without such a page.
     """
     try:
-        return dict(json.loads(Path(scale_folder, "verified.json").read_text())["studies"])
+        words = dict(json.loads(Path(scale_folder, "verified.json").read_text())["studies"])
     except (OSError, ValueError, TypeError, KeyError):
         return {}
+    return {key: word for key, word in words.items() if Path(scale_folder, key).is_dir()}
 
 
 def load_others(words: Mapping[str, str], config: Mapping[str, Any]) -> dict[str, Study]:
