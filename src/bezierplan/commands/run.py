@@ -53,7 +53,7 @@ def main(*words: str) -> None:
 
 def command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
-    snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
+    snakemake = [sys.executable, "-m", "snakemake"]
     if not any(word.startswith("--workflow-profile") for word in words):
         # Of a profile, Snakemake would tell each time that it uses it.
         profile = checked.read(TREE / "profiles" / "default" / "profile.yaml")
@@ -66,4 +66,5 @@ def command(words: Sequence[str]) -> list[str]:
     for word in folders:
         others.remove(word)
     config = ["--config", f"studies={json.dumps([*folders.values()])}"] if folders else []
-    return [*snakemake, *others, *config]
+    # Other options before this one could take targets for their values.
+    return [*snakemake, "--snakefile", str(TREE / "Snakefile"), *others, *config]

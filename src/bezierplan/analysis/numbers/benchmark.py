@@ -6,7 +6,6 @@ from pathlib import Path as FilePath
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.results import of_folder
 from bezierplan.geometry import shortest_paths
 from bezierplan.places import TREE
 from bezierplan.schema.checked import check_all
@@ -58,6 +57,8 @@ def stored(experiment: str) -> pd.DataFrame:
 
 def of_results(folder: FilePath, experiments: Iterable[str]) -> pd.DataFrame:
     """The summaries of experiments, each `study/name`, in results of a scale."""
+    from bezierplan.analysis.results import of_folder  # which the core's libraries cannot
+
     tables = []
     for experiment in experiments:
         study, _, name = experiment.partition("/")
