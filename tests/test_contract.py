@@ -191,7 +191,12 @@ def test_what_ends_the_runs_is_one_fault(case, tmp_path):
     ("old", "new", "fact", "told"),
     [
         ("KEPT =", "exact = True\nKEPT =", "claims", EXACT),
-        ('"tries": 1', '"own": np.inf', "plan", "column own: inf; expected a finite number, or nan"),
+        (
+            '"tries": 1',
+            '"own": np.inf',
+            "plan",
+            "column own: inf; expected a finite number, or nan",
+        ),
         (
             "    start, target",
             "    rng = np.random.default_rng(5)\n    start, target",

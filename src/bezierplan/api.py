@@ -203,8 +203,8 @@ class Answer(Judgement):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner
-        is left, infinite without turns; nan of other planners.
+        Radius of the tightest round turn, where the planner is `rounded_shortest_path`: infinite
+        without turns, 0 if all of them are corners; nan of other planners.
     cpu_s : float
         CPU time of the planner, in seconds; nan of a run of a study.
     """
@@ -471,7 +471,9 @@ def plan(
         Way points (x, y), in their order: the path joins paths from one to the next, with a corner
         where their directions differ. For the planner without a method and `shortest_path`.
     **settings
-        Settings in place of the method's own. Without a method: `turning_radius` and `offset`.
+        Settings in place of the method's own. Without a method: `turning_radius`, the smallest
+        radius that turns should have, and `excess`, the share by which the path may be longer than
+        the shortest. With neither, turns are as wide as a path at most 1 % longer allows.
 
     Returns
     -------
@@ -580,7 +582,12 @@ def answers_to(
     if np.shape(via) != (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
-    own = {
+    label, (planner, module, preset) = _name(method), _planner(method)
+    if planner == planning.ROUNDED:
+        preset |= planning.rounding(settings)
+    if places and planner not in planning.CHAINED:
+        raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {label}")
+    settings = preset | {
         name: each.item() if isinstance(each, np.generic) else each
         for name, each in settings.items()
     }
@@ -588,19 +595,15 @@ def answers_to(
     homes: list[tuple[Problem, shortest_paths.Bound]] = []
     for problem in problems:
         _check_problem(problem)
-        planner, module, preset = _planner(method, problem.workspace)
-        if places and planner not in planning.CHAINED:
-            chained = " and ".join(planning.CHAINED)
-            raise ValueError(f"via: only for {chained}; the planner is {_name(method)}")
         grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
         home = problem_files.placed(grown, getattr(module, "workspaces", None))
-        check_settings(_name(method), module, preset | own, home)
+        check_settings(label, module, settings, home)
         legs = planning.legs(home, places)
-        label = f"method: {_name(method)}{f': {problem.name}' if len(problems) > 1 else ''}"
+        which = f"method: {label}{f': {problem.name}' if len(problems) > 1 else ''}"
         seeds = range(int(seed), int(seed) + int(repeats))
         if getattr(module, "deterministic", False):
             seeds = seeds[:1]
-        runs += [planning.Run(label, legs, preset | own, each) for each in seeds]
+        runs += [planning.Run(which, legs, settings, each) for each in seeds]
         homes += [(home, planning.shortest(legs))] * len(seeds)
     file = planner if is_file(planner) else ""
     found: list[Answer] = []
@@ -616,7 +619,7 @@ def answers_to(
             radius = plan.extra["least_radius"] if planner == planning.ROUNDED else math.nan
             judged |= {"turning_radius": radius, "settings": run.settings, "cpu_s": cpu_s}
             fields = answers.of_planner(plan) | judged
-            found.append(Answer(**fields, via=places, method=_name(method)))
+            found.append(Answer(**fields, via=places, method=label))
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
@@ -686,12 +689,12 @@ def _name(method: Method | None) -> str:
     return getattr(method, "__name__", repr(method))
 
 
-def _planner(method: Method | None, workspace: Workspace) -> tuple[str, Any, dict[str, Any]]:
+def _planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
     """Return, of a method, its planner as a name of this package or a file (empty for others), the
     planner's module, and settings.
     """
     if method is None or method == planning.ROUNDED:
-        return planning.ROUNDED, planner_module(planning.ROUNDED), planning.preset(workspace)
+        return planning.ROUNDED, planner_module(planning.ROUNDED), {}
     if isinstance(method, str):
         planner, preset = named(method)
         return planner, interface.loaded(planner, f"method: {method}"), preset

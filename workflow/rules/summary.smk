@@ -68,7 +68,9 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        evidence=lambda wildcards: evidence(wildcards.scale, {wildcards.study}),
+        worth=lambda wildcards: (
+            [f"results/{wildcards.scale}/worth.csv"] if wildcards.scale == "extended" else []
+        ),
         sources=sources(of(jobs.verdict)),
     output:
         report(
@@ -95,13 +97,6 @@ rule verified:
         unpack(judged),
         shown=shown,
         summary=lambda wildcards: summed(wildcards.scale),
-        readings=lambda wildcards: of_readings(
-            wildcards.scale,
-            OF_SCALE[wildcards.scale],
-            "readings",
-            "claims_by_reading",
-            "numbers_by_reading",
-        ),
     output:
         # It says which studies the page shows, so it stays if its job is killed.
         update("results/{scale}/verified.json"),

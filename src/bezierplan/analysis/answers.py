@@ -111,8 +111,9 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
     }
     radius = getattr(answer, "turning_radius", math.nan)
     if not math.isnan(radius):
-        wish = answer.settings["turning_radius"]
-        less = "" if planning.keeps_radius(wish, radius) else f"; no room for {wish:.6g} {unit}"
+        asked = answer.settings["turning_radius"]
+        kept = math.isinf(asked) or planning.keeps_radius(asked, radius)
+        less = "" if kept else f"; no room for {asked:.6g} {unit}"
         words["turning radius"] = f"{radius:.6g} {unit}{less}"
     words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
     if answer.feasible:
