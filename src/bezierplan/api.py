@@ -498,7 +498,7 @@ def plan(
     (True, 8.416, 0.0015)
     >>> wide = plan(problem, robot_radius=0.5)
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
-    (True, 9.156, 0.5)
+    (True, 9.247, 0.5)
     """
     (answer,) = answers_to([problem], method, 1, seed, robot_radius, via, settings)
     return answer

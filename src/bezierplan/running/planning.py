@@ -35,11 +35,11 @@ _STRAIGHT = 1e-8
 _SAME = 1e-9
 
 
-def rounding(given: Collection[str]) -> dict[str, float]:
-    """Return settings of the planner with a turning radius, where some are given: a radius that is
-    asked for may make the path as long as it needs.
+def rounding(names: Collection[str]) -> dict[str, float]:
+    """Return settings of the planner with a turning radius, beside those of some names: a radius
+    that is asked for may make the path as long as it needs.
     """
-    if "turning_radius" in given:
+    if "turning_radius" in names:
         return {"excess": math.inf}
     return {"turning_radius": math.inf, "excess": EXCESS}
 
@@ -146,6 +146,6 @@ def _has_corner(arriving: Path, leaving: Path) -> bool:
     return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
 
 
-def keeps_radius(asked: float, radius: float) -> bool:
+def keeps_radius(wish: float, radius: float) -> bool:
     """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
-    return radius >= asked * (1 - _SAME)
+    return radius >= wish * (1 - _SAME)
