@@ -87,7 +87,7 @@ archive: .cache/archive/ready ## results/full with code and environment as an RO
 outcome: .venv/ready ## everything at scales full and extended, then docs/outcome and the README's table
 	@$(UNLOCK)
 	$(SNAKEMAKE) all extended $(ARGS)
-	$(RUN) -m bezierplan outcome
+	$(RUN) docs/outcome.py
 
 lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow pyproject.toml -o environment.txt

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+import outcome
 import pandas as pd
 import pytest
 
-from bezierplan.analysis.outcome import headline, outcome, summary
-from bezierplan.commands import outcome as command
+from bezierplan.analysis.outcome import headline, summary
 from bezierplan.commands import studies_of
 
 ROOT = Path(__file__).parents[1]
@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
-    shown = outcome.table(ROOT / outcome.KEPT, *command.named(studies_of()))
+    shown = outcome.table(ROOT / outcome.KEPT, *outcome.named(studies_of()))
     assert summary.with_block(readme, outcome.BLOCK, shown) == readme
 
 

@@ -3,12 +3,14 @@ scales.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
+`make outcome` writes it; the site and the report read it.
 """
 
 import re
 import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -16,7 +18,9 @@ from bezierplan.analysis import naming, words
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.analysis.outcome import headline, summary, verdict
+from bezierplan.commands import studies_of
 from bezierplan.running.inputs import PAPER
+from bezierplan.study.page import settings_of
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -28,18 +32,52 @@ TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
+PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 LAID = (
     "In each cell below the printed number stands before ours, of many runs: + agrees, x "
     "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
     "name."
 )
 
-
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
     "Python](../algorithms/{0}.py), [all claims](claims.csv), [all numbers](numbers.csv)."
 )
+
+
+def main() -> None:
+    """Write docs/outcome and the README's table. Raises FileNotFoundError for results that
+    `make outcome` has not made yet.
+    """
+    studies = studies_of()
+    settings = pd.DataFrame(
+        [(key, *row) for key, each in studies.items() for row in settings_of(each)],
+        columns=["study", "of", "setting", "value"],
+    )
+    compared = {key: each.baseline_comparison for key, each in studies.items()}
+    scored = [
+        f"{key}/{name}" for key, each in compared.items() if each for name in each.experiments
+    ]
+    tables = {
+        key: {
+            name: (study.tables[name].title, len(study.tables[name].index))
+            for name, table in study.compared().items()
+            if table.published and table.printed
+        }
+        for key, study in studies.items()
+    }
+    write(*named(studies), settings, scored, tables)
+    for picture in PICTURES:
+        study, _, name = picture.split("/")
+        shutil.copyfile(FULL / picture, KEPT / f"{study}_{name}")
+
+
+def named(studies: Mapping[str, Any]) -> tuple[dict[str, str], verdict.Files]:
+    """Return the titles of studies, and their sentences."""
+    titles = {key: study.title for key, study in studies.items()}
+    files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
+    return titles, {key: file for key, file in files.items() if file[0]}
 
 
 def write(
@@ -149,3 +187,7 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
 def sentences(text: str) -> list[str]:
     """What follows for a paper, sentence by sentence: README and the site's home have the first."""
     return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text.partition("\n\n")[0])
+
+
+if __name__ == "__main__":
+    main()
