@@ -258,7 +258,7 @@ class Comparison:
 
         return benchmark.scores(benchmark.summaries(self.runs))
 
-    def plot(self, axes: Axes | None = None, problem: str | None = None) -> Axes:
+    def plot(self, axes: Axes | None = None, problem: str = "") -> Axes:
         """Draw the best path of each method on one map, with a legend: the shortest free one.
 
         Parameters
@@ -272,7 +272,9 @@ class Comparison:
         -------
         Axes
         """
-        axes = self._draw(problem or next(iter(self._problems())), axes)
+        names = self._problems()
+        check_known(problem or names[0], names, "problem")
+        axes = self._draw(problem or names[0], axes)
         drawn_path.add_legend(axes.figure)
         return axes
 
@@ -282,13 +284,14 @@ class Comparison:
         """
         drawn_path.save(File(file), *self._draws())
 
-    def _problems(self) -> dict[str, None]:
+    def _problems(self) -> list[str]:
         """Return the names of the problems, in order."""
-        return {each.problem.name: None for own in self.answers.values() for each in own}
+        names = (each.problem.name for own in self.answers.values() for each in own)
+        return list(dict.fromkeys(names))
 
     def _draws(self) -> list[partial]:
         """Return what draws each problem, of many the first ones."""
-        return [partial(self._draw, name) for name in [*self._problems()][:_MOST_PANELS]]
+        return [partial(self._draw, name) for name in self._problems()[:_MOST_PANELS]]
 
     def _draw(self, problem: str, axes: Axes | None) -> Axes:
         looks = style.lines([*self.answers], style.LOOK_OF_PLANNER)
@@ -592,38 +595,30 @@ def answers_to(
         for name, each in settings.items()
     }
     runs: list[planning.Run] = []
-    homes: list[tuple[Problem, shortest_paths.Bound]] = []
     for problem in problems:
         _check_problem(problem)
         grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
         home = problem_files.placed(grown, getattr(module, "workspaces", None))
         check_settings(label, module, settings, home)
         legs = planning.legs(home, places)
-        which = f"method: {label}{f': {problem.name}' if len(problems) > 1 else ''}"
-        seeds = range(int(seed), int(seed) + int(repeats))
-        if getattr(module, "deterministic", False):
-            seeds = seeds[:1]
-        runs += [planning.Run(which, legs, settings, each) for each in seeds]
-        homes += [(home, planning.shortest(legs))] * len(seeds)
-    file = planner if is_file(planner) else ""
+        which = f"method: {label}" + f": {problem.name}" * (len(problems) > 1)
+        run = planning.Run(which, home, legs, planning.shortest(legs), settings, int(seed))
+        again = 1 if getattr(module, "deterministic", False) else int(repeats)
+        runs += [run._replace(seed=run.seed + number) for number in range(again)]
     found: list[Answer] = []
     try:
-        for plan, cpu_s in planning.planned(module.plan, runs, file):
-            run, (home, shortest) = runs[len(found)], homes[len(found)]
-            judged = answers.verdict(home, shortest, plan.path)
-            if judged.get("feasible") and judged["length"] < shortest_paths.least_length(shortest):
+        for run, plan, cpu_s in planning.plans(module.plan, runs, planner * is_file(planner)):
+            judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
+            if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
                 raise ValueError(
                     f"its path is {judged['length']:.12g} long and feasible, but no free path is "
-                    f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
+                    f"shorter than {run.bound.length:.12g}: the checker or the bound is wrong"
                 )
-            radius = plan.extra["least_radius"] if planner == planning.ROUNDED else math.nan
-            judged |= {"turning_radius": radius, "settings": run.settings, "cpu_s": cpu_s}
-            fields = answers.of_planner(plan) | judged
-            found.append(Answer(**fields, via=places, method=label))
+            found.append(Answer(**judged, method=label, settings=settings, via=places, cpu_s=cpu_s))
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
-        raise ValueError(f"{run.label}: {fault}") from None
+        raise ValueError(f"{runs[len(found)].label}: {fault}") from None
     return found
 
 

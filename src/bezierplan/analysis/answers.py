@@ -59,7 +59,8 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
 
 def of_planner(plan: Plan) -> dict[str, Any]:
     """Return the fields of `api.Answer` that are the planner's own."""
-    return {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
+    own = {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
+    return own | {"turning_radius": plan.extra.get("least_radius", math.nan)}
 
 
 def of_run(results: Results, name: str) -> dict[str, Any]:
@@ -111,7 +112,7 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
     }
     radius = getattr(answer, "turning_radius", math.nan)
     if not math.isnan(radius):
-        asked = answer.settings["turning_radius"]
+        asked = answer.settings.get("turning_radius", math.inf)
         kept = math.isinf(asked) or planning.keeps_radius(asked, radius)
         less = "" if kept else f"; no room for {asked:.6g} {unit}"
         words["turning radius"] = f"{radius:.6g} {unit}{less}"

@@ -3,7 +3,7 @@ of all.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -72,19 +72,23 @@ def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
 
 
 class Run(NamedTuple):
-    """A call of a planner for each leg of a problem. label: how messages about it begin."""
+    """A call of a planner for each leg of a problem. label: how messages about it begin. bound: the
+    exact shortest path through all legs.
+    """
 
     label: str
+    problem: Problem
     legs: Sequence[Problem]
+    bound: shortest_paths.Bound
     settings: dict[str, Any]
     seed: int
 
 
-def planned(
+def plans(
     plan: Callable[..., Any], runs: Sequence[Run], file: str
-) -> Iterator[tuple[Plan, float]]:
-    """Yield what a planner answers in each run, as plain values (`answer.accepted`), and its CPU
-    seconds.
+) -> Iterator[tuple[Run, Plan, float]]:
+    """Yield each run, what a planner answers in it, as plain values (`answer.accepted`), and its
+    CPU seconds.
 
     plan: its function. file: the path of its file, which is executed in a process of its own; empty
     if it is not given as one. Raises PlannerFailure for an answer that is none.
@@ -92,27 +96,22 @@ def planned(
     problems, tasks = {}, []
     for run in runs:
         for leg in run.legs:
-            problems[f"{len(tasks)}"] = leg
-            tasks.append(worker.Task(run.label, f"{len(tasks)}", run.seed, run.settings))
-    replies = (
-        process.isolated_replies(worker.Work(file, problems), tasks, (), tasks[0].name)
-        if file
-        else _replies(plan, problems, tasks)
-    )
+            task = worker.Task(run.label, f"{len(tasks)}", run.seed, run.settings)
+            problems[task.problem] = leg
+            tasks.append(task)
+    if file:
+        replies = process.isolated_replies(worker.Work(file, problems), tasks, (), runs[0].label)
+    else:
+        calls = (
+            partial(plan, problems[task.problem], task.generator(), **task.settings)
+            for task in tasks
+        )
+        replies = (worker.Reply(0, *worker.timed(call), True) for call in calls)
     for run in runs:
         made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
         with answer.of(run.label):
             legs = [answer.accepted(each.result, leg, taken) for each, leg in zip(made, run.legs)]
-        yield joined(legs), sum(each.cpu for each in made)
-
-
-def _replies(
-    plan: Callable[..., Any], problems: Mapping[str, Problem], tasks: Iterable[worker.Task]
-) -> Iterator[worker.Reply]:
-    """Yield what a planner's function answers to tasks in this process."""
-    for number, task in enumerate(tasks):
-        once = partial(plan, problems[task.problem], task.generator(), **task.settings)
-        yield worker.Reply(number, *worker.timed(once), True)
+        yield run, joined(legs), sum(each.cpu for each in made)
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
