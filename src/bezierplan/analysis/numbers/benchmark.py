@@ -14,7 +14,6 @@ from bezierplan.workspaces.problem import Path, Problem
 
 _OF_FREE = ["length", "excess", "curvature"]
 _MEDIANS = [*_OF_FREE, "evaluations", "cpu_s"]
-_STORED = ["experiment", "problem", "method", "runs", "feasible", "excess", "evaluations"]
 
 STORED = TREE / "docs" / "outcome" / "benchmark.csv"
 """Summaries of the papers' methods, at the papers' numbers of runs."""
@@ -53,18 +52,6 @@ def stored(experiment: str) -> pd.DataFrame:
     """The summaries of the papers' methods on an experiment, `study/name`."""
     rows = pd.read_csv(STORED)
     return rows[rows["experiment"] == experiment].drop(columns="experiment")
-
-
-def of_results(folder: FilePath, experiments: Iterable[str]) -> pd.DataFrame:
-    """The summaries of experiments, each `study/name`, in results of a scale."""
-    from bezierplan.analysis.results import of_folder  # which the core's libraries cannot
-
-    tables = []
-    for experiment in experiments:
-        study, _, name = experiment.partition("/")
-        runs = of_folder(folder / study, name).runs.rename(columns={"bound": "shortest"})
-        tables.append(summaries(runs).assign(experiment=experiment))
-    return pd.concat(tables)[_STORED]
 
 
 def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path | None, float]]:
