@@ -36,6 +36,10 @@ EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 SCORED = ["experiment", "problem", "method", "runs", "feasible", "excess", "evaluations"]
+BESIDE = (
+    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
+    "needs no search and is always free. A bend below 1 is smoother."
+)
 LAID = (
     "In each cell below the printed number stands before ours, of many runs: + agrees, x "
     "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
@@ -221,7 +225,7 @@ def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
     parts = [f"**{' '.join(head.sentences)}**"]
     for table, headings, legend in (
         (head.papers, headline.PAPERS, headline.LEGEND),
-        (head.methods, headline.METHODS, headline.BESIDE),
+        (head.methods, headline.METHODS, BESIDE),
     ):
         if not table.empty:
             shown = table.rename(

@@ -44,14 +44,7 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
         "evaluations": 1,
     }
     pd.DataFrame(paths).to_csv(file, index=False)
-    made = (
-        "--problems",
-        tmp_path / "p.csv",
-        "--out",
-        tmp_path / "o.csv",
-        "--plot",
-        tmp_path / "p.svg",
-    )
+    made = f"--problems={tmp_path}/p.csv --out={tmp_path}/o.csv --plot={tmp_path}/p.svg".split()
     rows = scored(file, "song2016/shortest_path", "--repeats", 1, *made)
     assert pd.read_csv(tmp_path / "o.csv")["method"].to_list() == [*rows]
     assert (tmp_path / "p.svg").read_text().count("15_240") == 1

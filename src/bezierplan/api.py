@@ -43,9 +43,6 @@ if TYPE_CHECKING:
 Method = str | Callable[..., Any] | ModuleType
 Entry = Method | None | tuple[Method | None, Mapping[str, Any]]
 
-_MOST_PANELS = 12
-"""Problems in a picture."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
@@ -272,9 +269,10 @@ class Comparison:
         -------
         Axes
         """
-        names = self._problems()
-        check_known(problem or names[0], names, "problem")
-        axes = self._draw(problem or names[0], axes)
+        draws = self._draws()
+        problem = problem or next(iter(draws))
+        check_known(problem, draws, "problem")
+        axes = draws[problem](axes)
         drawn_path.add_legend(axes.figure)
         return axes
 
@@ -282,31 +280,26 @@ class Comparison:
         """Save what `plot` draws of each problem, at most 12 of them, as a picture (.svg, .png,
         .pdf).
         """
-        drawn_path.save(File(file), *self._draws())
+        drawn_path.save(File(file), *self._draws().values())
 
-    def _problems(self) -> list[str]:
-        """Return the names of the problems, in order."""
+    def _draws(self) -> dict[str, partial]:
+        """Return what draws each problem, by name."""
         names = (each.problem.name for own in self.answers.values() for each in own)
-        return list(dict.fromkeys(names))
-
-    def _draws(self) -> list[partial]:
-        """Return what draws each problem, of many the first ones."""
-        return [partial(self._draw, name) for name in self._problems()[:_MOST_PANELS]]
+        return {name: partial(self._draw, name) for name in names}
 
     def _draw(self, problem: str, axes: Axes | None) -> Axes:
         looks = style.lines([*self.answers], style.LOOK_OF_PLANNER)
         for number, (label, answered) in enumerate(self.answers.items()):
             own = [each for each in answered if each.problem.name == problem]
             best = max(own, key=lambda each: (each.feasible, each.path is not None, -each.length))
-            width = 2.0 - number / len(looks)
-            look = {"label": label + " (no free path)" * (not best.feasible), "linewidth": width}
-            axes = best.plot(axes, map=not number, **looks[number] | look | {"marker": ""})
+            named = {"label": label + " (no free path)" * (not best.feasible), "marker": ""}
+            axes = best.plot(axes, map=not number, **looks[number] | named)
             axes.set_title(problem)
         return axes
 
     def _repr_html_(self) -> str:
         """The picture and the table, for notebooks."""
-        return drawn_path.html(self.table.to_html(float_format="%.4g"), *self._draws())
+        return drawn_path.html(self.table.to_html(float_format="%.4g"), *self._draws().values())
 
 
 def read_map(
@@ -768,11 +761,8 @@ def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
     >>> methods()["song2016/smooth"]
     ('grid',)
     """
-    proposed = {
-        f"{key}/{compared.proposed}"
-        for key in _keys()
-        if (compared := _study(key).baseline_comparison)
-    }
+    compared = {key: _study(key).baseline_comparison for key in _keys()}
+    proposed = [f"{key}/{each.proposed}" for key, each in compared.items() if each]
     return {
         name: tuple(getattr(planner_module(planner), "workspaces", interface.KINDS.values()))
         for name, planner in _planners().items()

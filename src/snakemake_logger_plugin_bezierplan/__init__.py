@@ -107,19 +107,21 @@ class LogHandler(RichHandler):
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
             self.last_line, taken = now, now - self.started
-            left = f", about {in_hours(taken * (total / done - 1))} left" if done < total else ""
-            share = f"{100 * done // total} %: {done} of {total} jobs"
-            self.say(f"{share}, {in_hours(taken)} elapsed{left}")
+            share = 100 * done // total
+            # The first jobs say little of the others.
+            left = f", about {in_hours(taken * (total / done - 1))} left" * (5 <= share < 100)
+            self.say(f"{share} %: {done} of {total} jobs, {in_hours(taken)} elapsed{left}")
 
 
 def last_lines(outputs: set[Path], seconds: float) -> list[str]:
     """What was made, where the results are, how long it took, and last the page."""
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
-    counts = {
-        what: sum(file.name.endswith(ending) for file in outputs) for what, ending in MADE.items()
-    }
-    made = [f"{count} {what}{'s' * (count > 1)}" for what, count in counts.items() if count]
+    made = [
+        f"{count} {what}{'s' * (count > 1)}"
+        for what, ending in MADE.items()
+        if (count := sum(file.name.endswith(ending) for file in outputs))
+    ]
     lines = [f"Made: {', '.join(made)}"] if made else []
     lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):

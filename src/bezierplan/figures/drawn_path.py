@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from bezierplan.workspaces.problem import Path, Problem, Workspace
 
+_MOST = 12
+"""Problems in a picture."""
 _NOTEBOOK = {"dpi": 140, "format": "webp"}
 """How pictures are written into a notebook, which keeps them all: as a seventh of an SVG."""
 
@@ -76,12 +78,13 @@ def html(text: str, *draws: Callable[..., object]) -> str:
 
 
 def save(file: File | io.BytesIO, *draws: Callable[..., object], **how: Any) -> None:
-    """Save what functions draw, each on axes of its own, as a picture with a legend, of the kind
-    that the file's suffix names. how: options of matplotlib's `savefig`.
+    """Save what functions draw, the first ones of many, each on axes of its own, as a picture with
+    a legend, of the kind that the file's suffix names. how: options of matplotlib's `savefig`.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
+    draws = draws[:_MOST]
     columns = min(len(draws), 3)
     width = style.WIDTHS["two" if columns > 1 else "one"]
     rows = -(-len(draws) // columns)

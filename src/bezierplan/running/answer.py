@@ -89,18 +89,15 @@ def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
     """Raise Unfit for columns of a planner's own that are others than those of its first run; or,
     where they are to be finite, for an infinite number.
     """
-    truths, wanted = (
-        {name: isinstance(value, _TRUTHS) for name, value in each.extra.items()}
-        for each in (plan, first)
-    )
-    if differing := dict(truths.items() ^ wanted.items()):
-        raise Unfit(
-            f"column {min(differing)}: missing, or a truth and a number in two runs; a table needs "
-            "the same columns in each row"
-        )
-    for name, value in plan.extra.items():
-        if finite and math.isinf(value):
-            raise Unfit(f"column {name}: {value}; expected a finite number, or nan for none")
+    for name in {**first.extra, **plan.extra}:
+        pair = plan.extra.get(name), first.extra.get(name)
+        if None in pair or len({isinstance(value, _TRUTHS) for value in pair}) > 1:
+            raise Unfit(
+                f"column {name}: missing, or a truth and a number in two runs; a table needs the "
+                "same columns in each row"
+            )
+        if finite and math.isinf(pair[0]):
+            raise Unfit(f"column {name}: {pair[0]}; expected a finite number, or nan for none")
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:

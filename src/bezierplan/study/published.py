@@ -94,11 +94,11 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         share, least = row["statistic"] == "share", metrics.METRICS[metric].least
         low = 0.0 if share or isinstance(least, str) else min(least, 0.0)
         for column, fits, wanted in (
-            ("value", row["value"], "a number"),
             (
                 "value",
-                low <= float(row["value"] or low) <= (1.0 if share else math.inf),
-                f"at least {low:g}{' and at most 1' * share}, a {row['statistic']} of {metric}",
+                row["value"] and low <= float(row["value"]) <= (1.0 if share else math.inf),
+                f"a number of at least {low:g}{' and at most 1' * share}, a {row['statistic']} of "
+                f"{metric}",
             ),
             (
                 "n",

@@ -103,12 +103,12 @@ def _refuse_degrees(shapes: list[Shape]) -> None:
     """
     import shapely
 
-    west, south, east, north = shapely.total_bounds([shape.polygon for shape in shapes])
-    longitude, latitude = max(-west, east), max(-south, north)
-    extent = max(east - west, north - south)
-    if longitude <= 180 and latitude <= 90 and extent < _AWAY * max(longitude, latitude):
+    bounds = shapely.total_bounds([shape.polygon for shape in shapes])
+    low, high = bounds[:2], bounds[2:]
+    far, extent = np.maximum(-low, high), max(high - low)
+    if (far <= (180, 90)).all() and extent < _AWAY * max(far):
         raise ValueError(
-            f"places about {west:g}, {south:g} with an extent of {extent:.2g} look like degrees; "
+            f"places about {low[0]:g}, {low[1]:g} with an extent of {extent:.2g} look like degrees; "
             "expected x and y as lengths: project them, or move a map in metres near the origin"
         )
 

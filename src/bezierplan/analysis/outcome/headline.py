@@ -37,11 +37,6 @@ LEGEND = (
     "print the map, or define the quantity."
 )
 
-BESIDE = (
-    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
-    "needs no search and is always free. A bend below 1 is smoother."
-)
-
 CLOSE = 0.1
 """Relative deviation up to which a number is close to the printed one."""
 
