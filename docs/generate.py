@@ -17,11 +17,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import content
+import outcome
 import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
 
-from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings

@@ -2,12 +2,12 @@
 
 import math
 
+import outcome
 import pandas as pd
 import pytest
 from studies import studies
 
 from bezierplan.analysis.claims import by_reading
-from bezierplan.analysis.outcome import outcome
 from bezierplan.places import TREE
 from bezierplan.study import alternatives, jobs
 
