@@ -20,7 +20,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
-from bezierplan.study import experiments, jobs, page, reading
+from bezierplan.study import experiments, jobs, page, reading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -65,9 +65,9 @@ STUDIES = or_exit(lambda: reading.load(reading.asked(reading.read_config(config)
 # Planners of studies, which that interpreter reads, are known by now.
 sys.executable = shlex.quote(sys.executable)
 RESULTS = "results/{scale}/{study}"
-# What a module that uses this workflow puts before each path of results: for the page, which looks
-# what there is. Snakemake tells it nowhere else.
-PREFIX = workflow.modifier.path_modifier.prefix or ""
+# The folder of results, with what a module that uses this workflow puts before each path: for the
+# page, which looks what there is. Snakemake tells it nowhere else.
+ROOT = f"{workflow.modifier.path_modifier.prefix or ''}{page.RESULTS}"
 
 
 def one_of(names):
@@ -137,22 +137,24 @@ wildcard_constraints:
 
 
 def params(make, **more):
-    """Params of a rule: its job, and the digest by which Snakemake sees that it is another one."""
+    """Params of a rule: its job, and the account by which Snakemake sees that it is another one."""
     job = of(make, **more)
-    return {"job": job, "digest": lambda wildcards: job(wildcards).digest}
+    return {"job": job, "account": lambda wildcards: job(wildcards).grounds}
 
 
 @cache
-def made(make, more, wildcards):
-    names = dict(wildcards)
-    names.pop("tree", None)
-    study = names.pop("study", None)
-    return make(STUDIES[study] if study else STUDIES, **names, **dict(more))
+def made(make, names):
+    return stored.build_job(STUDIES, make, dict(names))
+
+
+def build(make, names):
+    """The job that a function makes of a study, or of all."""
+    return made(make, tuple(sorted((name, names[name]) for name in names if name != "tree")))
 
 
 def of(make, **more):
-    """The job that a function makes of a study, or of all, for the wildcards of a rule."""
-    return lambda wildcards: made(make, tuple(more.items()), tuple(sorted(wildcards.items())))
+    """The same for the wildcards of a rule."""
+    return lambda wildcards: build(make, {**dict(wildcards), **more})
 
 
 KINDS = {
@@ -238,7 +240,7 @@ def shown(wildcards):
     artefacts = [
         file
         for study in STUDIES.values()
-        for name in page.shown_of(study, wildcards.scale, PREFIX)
+        for name in page.shown_of(study, wildcards.scale, ROOT)
         for file in files_of(wildcards.scale, study, name)
     ]
     named = {
@@ -264,6 +266,6 @@ def judged(wildcards):
     """Files of the results that the page shows, and of those that the summary compares with the
     baseline.
     """
-    makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
+    makes = [of(stored.verified, root=ROOT, build=build), *([of(jobs.baseline_comparison)] if COMPARED else [])]
     parts = [results(job)(wildcards) for job in makes]
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}

@@ -114,14 +114,14 @@ rule verified:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.verified, root=PREFIX),
+        **params(stored.verified, root=ROOT, build=build),
     script:
         "../scripts/job.py"
 
 
 rule page:
     input:
-        unpack(results(of(page.page, root=PREFIX))),
+        unpack(results(of(page.page, root=ROOT))),
         shown=shown,
         summary=SUMMARY,
         # Last, for it is of all these files.
@@ -134,6 +134,6 @@ rule page:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.page, root=PREFIX),
+        **params(page.page, root=ROOT),
     script:
         "../scripts/job.py"

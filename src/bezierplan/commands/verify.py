@@ -1,15 +1,19 @@
 """Check all results of a scale again, from runs to page."""
 
+import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn
 
+from bezierplan.analysis.jobs import Job, Runs
 from bezierplan.analysis.outcome import proof
-from bezierplan.commands import config_of, cores, studies_of, study_named
+from bezierplan.commands import config_of, cores, study_named
+from bezierplan.machine import opened
+from bezierplan.places import relative
 from bezierplan.running import recheck
-from bezierplan.study import stored
+from bezierplan.study import reading, stored
+from bezierplan.study.jobs import Studies
 
 
 def main(
@@ -19,12 +23,12 @@ def main(
     cores: int = cores(),
     all_: bool = False,
 ) -> None:
-    """Print a line for each stored value or file that differs from what is made again, and what was
-    checked: runs are judged again; the first run of each file and one in a hundred, bounds and all
-    files that follow from runs are made again, by the code that made the runs.
+    """Print a line for each stored value or file that differs from what is made again, what was
+    checked, and the answer: `made by this code`, `made by other code or libraries`, or `differs`.
 
-    Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder
-    without results or a file that cannot be read.
+    Runs are judged again; the first run of each file and one in a hundred, bounds and all files
+    that follow from runs are made again. Ends with status 1 if anything differs, or nothing makes a
+    file. Raises ValueError or FileNotFoundError for a folder without results.
 
     Parameters
     ----------
@@ -44,45 +48,114 @@ def main(
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
-    config = config_of()
-    places = stored.places_of(folder, config, map(study_named, studies))
-    loaded = studies_of([*places.values()]) if places else {}
-    tasks, left = stored.tasks(loaded, folder), stored.of_nothing(loaded, folder)
-    faults = proof.unlisted(folder)
-    missing = [fault for fault in faults if not Path(fault.file).is_file()]
-    if missing:
-        _fail(*missing, f"{len(missing)} files are missing")
-    try:
-        verdict = recheck.verify(tasks, cores, progress)
-    except ValueError as fault:
-        # What cannot be read may have been told already.
-        if not faults:
-            raise
-        _fail(*faults, fault)
-    faults += verdict.faults
-    lines = [f"{file}: of no table, figure or runs; delete it" for file in left]
-    lines += [
-        f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
-        "again"
+    places = stored.places_of(folder, config_of(), map(study_named, studies))
+    config = proof.narrowed(config_of(), [*places.values()])
+    loaded = reading.load(reading.read_config(config))
+    listed = proof.listed(folder)
+    made = _jobs(loaded, listed, folder)
+    left = stored.strangers(folder, made)
+    changes = _changes(made, listed)
+    faults = dict.fromkeys(proof.unlisted(folder, {} if listed.fault else listed.digests))
+    if listed.fault:
+        faults[recheck.Difference(str(folder / proof.LIST), listed.fault)] = None
+
+    def add(found: Iterable[recheck.Difference]) -> set[str]:
+        """Add faults of further files, and return all files with faults."""
+        known = {fault.file for fault in faults}
+        faults.update(dict.fromkeys(fault for fault in found if fault.file not in known))
+        return {fault.file for fault in faults}
+
+    tasks = [*_tasks(loaded, made, changes, folder)]
+    verdict = recheck.verify(tasks, cores, progress)
+    bad = add(verdict.faults)
+    tasks = [
+        task._replace(runs={file: task.runs[file] for file in task.runs if file not in bad})
+        for task in tasks
+        if bad.isdisjoint((task.problems, task.changed))
     ]
-    if not faults:
-        again = recheck.made_again(tasks, cores, verdict.digest, all_)
-        faults = again.faults
-        progress(f"{again.runs} runs made again, {len(faults)} faults")
-        lines.append(f"{again.runs} runs made again")
-    if not faults:
-        files, faults = proof.differing(folder, left, config, places, cores)
-        lines.append(f"{files} files made again")
+    again = recheck.made_again(tasks, cores, verdict.digest, all_)
+    add(again.faults)
+    progress(f"{again.runs} runs made again, {len(faults)} faults")
+    files, others = proof.differing(folder, left, config, listed.studies, cores)
+    add(others)
+    words = _in_words(changes, listed)
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
-    lines.append(f"digest {verdict.digest}; {', '.join(versions)}")
-    but = f" but for {len(left)} files that nothing makes" if left else ""
-    lines.append(f"{len(faults)} values differ" if faults else f"sound{but}")
+    equal = f"{again.runs} runs and {files} files made again, all equal"
+    print(
+        *(f"{fault}{_since(fault, changes, folder)}" for fault in faults),
+        *(f"{file}: nothing makes it; delete it" for file in left),
+        f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
+        f"again; digest {verdict.digest}",
+        f"verified with {', '.join(versions)}",
+        f"differs: {len(faults)} faults{words and f'; made by other code or libraries ({words})'}"
+        if faults
+        else f"made by other code or libraries ({words}): {equal}"
+        if words
+        else f"made by this code: {equal}",
+        sep="\n",
+    )
     if faults or left:
-        _fail(*faults, *lines)
-    print(*lines, sep="\n")
+        sys.exit(1)
 
 
-def _fail(*lines: Any) -> NoReturn:
-    """End with status 1: something differs."""
-    print(*lines, sep="\n")
-    sys.exit(1)
+def _in_words(changes: Mapping[str, set[str]], listed: proof.Listed) -> str:
+    """Return what of the accounts of all files is another now, in words; empty if nothing is."""
+    if not listed.accounts:
+        return f"no {proof.LIST} says which"
+    # The list holds all accounts, so that each change is one of its settings.
+    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
+    python = listed.versions.get("python"), platform.python_version()
+    if names and python[0] != python[1]:
+        names.add(f"python {python[0]} -> {python[1]}")
+    return ", ".join(sorted(names or changes.get(proof.LIST, ())))
+
+
+def _since(fault: recheck.Difference, changes: Mapping[str, set[str]], folder: Path) -> str:
+    """Return what has changed since the file of a fault was made."""
+    name = fault.file.removeprefix(f"{folder}/")
+    changed = ", ".join(sorted(changes.get(name, ())))
+    return f"; since it was made, other: {changed}" if changed else ""
+
+
+def _jobs(studies: Studies, listed: proof.Listed, folder: Path) -> dict[str, Job]:
+    """Return the job that makes each file of a scale. What shows several studies shows those of
+    its list.
+    """
+    together = {key: studies[key] for key in studies if key in listed.studies} or studies
+    found = {}
+    for make, names, files in stored.made(studies, folder.resolve().name, f"{folder}/../"):
+        job = stored.build_job(studies if "study" in names else together, make, names)
+        found.update(dict.fromkeys(files, job))
+    return found
+
+
+def _changes(made: Mapping[str, Job], listed: proof.Listed) -> dict[str, set[str]]:
+    """Return what of the accounts of listed files is not that of their jobs, by file, in words."""
+    found = {}
+    for file, account in listed.accounts.items():
+        now = made[file].account | opened.contents(account) if file in made else {}
+        found[file] = {
+            f"{name} {account.get(name)} -> {now.get(name)}" if name in listed.versions else name
+            for name in account.keys() | now
+            if account.get(name) != now.get(name)
+        }
+    return found
+
+
+def _tasks(
+    studies: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
+) -> Iterator[recheck.StoredRuns]:
+    """Yield the runs of each method in an experiment of which there are some."""
+    of_methods: dict[Path, dict[str, Runs]] = {}
+    for file, job in made.items():
+        place = folder / file
+        if isinstance(job, Runs) and place.stem.isdecimal() and place.parent.is_dir():
+            of_methods.setdefault(place.parent, {})[str(place)] = job
+    for place, runs in of_methods.items():
+        key, _, experiment, _ = place.relative_to(folder).parts
+        names = {name for file in runs for name in changes.get(file.removeprefix(f"{folder}/"), ())}
+        yield recheck.StoredRuns(
+            str(folder / key / "problems" / f"{experiment}.parquet"),
+            {file: job.chunk for file, job in runs.items()},
+            relative(studies[key].folder / "experiments.yaml") if "settings" in names else "",
+        )

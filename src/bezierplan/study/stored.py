@@ -1,23 +1,123 @@
-"""What each file of runs is to hold, by the studies."""
+"""The files of a scale, and the job that makes each: one account, by which the workflow runs jobs
+again, and by which `verify` asks whether a file is still what its job makes.
+"""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from bezierplan.running.recheck import StoredRuns
+from bezierplan.analysis.jobs import Job, Verification
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import jobs
+from bezierplan.study import jobs, page
+from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
 
+class Made(NamedTuple):
+    """Files below the folder of a scale, and what makes them: a function that makes a job of a
+    study, or of all, and the names that it gets, a study's among them if it is of one.
+    """
+
+    make: Callable[..., Job]
+    names: dict[str, Any]
+    files: list[str]
+
+
+def build_job(studies: Studies, make: Callable[..., Job], names: Mapping[str, Any]) -> Job:
+    """Return the job that a function makes."""
+    others = {name: value for name, value in names.items() if name != "study"}
+    return make(studies[names["study"]] if "study" in names else studies, **others)
+
+
+def made(studies: Studies, scale: str, root: str = page.RESULTS) -> Iterator[Made]:
+    """Yield what the workflow can make at a scale. root: as for `page.shown_of`."""
+    for key, study in studies.items():
+        for make, names, files in _of_study(study, scale):
+            names |= {"study": key, "scale": scale}
+            yield Made(make, names, [f"{key}/{file}" for file in files])
+    every, shown = {"scale": scale}, {"scale": scale, "root": root}
+    yield Made(jobs.baseline_comparison, every, ["baseline_comparison.csv"])
+    yield Made(jobs.worth, every, ["worth.csv"])
+    yield Made(jobs.summary, every, ["numbers.csv", "claims.csv", "wholes.csv"])
+    yield Made(verified, shown, ["verified.json"])
+    yield Made(page.page, shown, ["index.html"])
+
+
+def _of_study(study: Study, scale: str) -> Iterator[Made]:
+    """Yield what is made of one study, with its files in its own folder."""
+    for name in study.experiments:
+        experiment = {"experiment": name}
+        yield Made(jobs.problems, experiment, [f"problems/{name}.parquet"])
+        yield Made(jobs.bounds, experiment, [f"problems/{name}.bounds.parquet"])
+        for method in study.methods_of(name):
+            runs, folder = {"experiment": name, "method": method}, f"runs/{name}/{method}"
+            ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
+            for number in jobs.chunks(study, name, method, scale):
+                files = [f"{folder}/{number}{end}.parquet" for end in ends]
+                yield Made(jobs.runs, {**runs, "chunk": str(number)}, files)
+            yield Made(jobs.judgement, runs, [f"{folder}/judgement.json"])
+    for table in study.tables:
+        of_runs = table in study.compared()
+        files = [file for file in study.files_of(table) if not file.endswith(".tex")]
+        make = jobs.table_of_runs if of_runs else jobs.table_without_runs
+        yield Made(make, {"table": table}, files)
+        yield Made(jobs.latex, {"table": table}, [files[0].replace(".csv", ".tex")])
+    for figure in study.figures:
+        yield Made(jobs.figure, {"figure": figure}, study.files_of(figure))
+    if study.claims:
+        yield Made(jobs.claims, {}, ["claims.csv", "claim_checks.csv"])
+    if page.has_audit(study):
+        yield Made(jobs.audit, {}, ["audit.csv"])
+    if study.votes and scale == "extended":
+        kinds = ("readings", "claims_by_reading", "numbers_by_reading")
+        yield Made(jobs.readings, {}, [f"{kind}.csv" for kind in kinds])
+    if study.verdict_file():
+        yield Made(jobs.verdict, {}, ["verdict.md"])
+
+
+def verified(
+    studies: Studies,
+    scale: str,
+    root: str = page.RESULTS,
+    build: Callable[[Callable[..., Job], Mapping[str, Any]], Job] | None = None,
+) -> Verification:
+    """Return the job that lists all that the page shows, with the account of each file. build: what
+    makes a job, where the workflow keeps those that it has made.
+    """
+    build = build or partial(build_job, studies)
+    behind = page.shows(studies, scale, root)
+    compared = jobs.baseline_comparison(studies, scale).shows
+    known = {name: {**behind.get(name, {}), **compared.get(name, {})} for name in behind | compared}
+    artefacts = {key: page.shown_of(study, scale, root) for key, study in studies.items()}
+    accounts = []
+    for make, names, files in made(studies, scale, root):
+        key, experiment = names.get("study"), names.get("experiment")
+        if experiment:
+            is_shown = names.get("method") in (None, *known.get(f"{key}/{experiment}", ()))
+        else:
+            artefact = names.get("table", names.get("figure"))
+            is_shown = make is not verified and artefact in (None, *artefacts.get(key, ()))
+        if is_shown:
+            job = build(make, names)
+            accounts.append((files, job.key, job.account))
+    return Verification(f"{root}{scale}", accounts, shows=behind)
+
+
 def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Where the studies lie whose results a scale's folder holds, by name: as a configuration or
-    further words say, or in the working folder. Raises Fault for one that is in none of these.
+    """Return where the studies lie whose results a scale's folder holds, by name: as a
+    configuration or further words say, or in the working folder. Raises Fault for one that is in
+    none of these, for a folder of no scale, and FileNotFoundError without runs.
     """
     known = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
     found = {problems.parent.name for problems in folder.glob("*/problems")}
+    if not found:
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
+    check_known(folder.resolve().name, SCALES, f"{folder}: scale")
     for key in sorted(found - known.keys()):
         if not Path(key, "experiments.yaml").is_file():
             raise checked.Fault(
@@ -28,49 +128,13 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
     return {key: word for key, word in known.items() if key in found}
 
 
-def tasks(studies: Studies, folder: Path) -> list[StoredRuns]:
-    """What is to be judged below a scale's folder. Raises Fault for a folder of no scale, and
-    FileNotFoundError without runs.
-    """
-    scale, all_tasks = folder.resolve().name, []
-    for place in sorted(folder.glob("*/runs/*/*")):
-        key, _, experiment, method = place.relative_to(folder).parts
-        check_known(scale, SCALES, f"{folder}: scale")
-        study = studies[key]
-        if experiment in study.experiments and method in study.methods_of(experiment):
-            made = {
-                str(place / f"{number}.parquet"): jobs.runs(
-                    study, scale, experiment, method, str(number)
-                )
-                for number in jobs.chunks(study, experiment, method, scale)
-            }
-            all_tasks.append(
-                StoredRuns(
-                    str(folder / key / "problems" / f"{experiment}.parquet"),
-                    {file: each.chunk for file, each in made.items()},
-                    {file: each.digest for file, each in made.items()},
-                )
-            )
-    if not all_tasks:
-        raise FileNotFoundError(
-            f"{folder}: no runs here; expected a folder of results, such as results/full"
-        )
-    return all_tasks
-
-
-def of_nothing(studies: Studies, folder: Path) -> list[Path]:
-    """Files in the folders of a scale that no study makes."""
-    scale, strangers = folder.resolve().name, []
-    for key, study in studies.items():
-        made = {"claims.csv", "claim_checks.csv", "audit.csv"}
-        made.update(*map(study.files_of, (*study.tables, *study.figures)))
-        for experiment in study.experiments:
-            made |= {f"problems/{experiment}.{end}parquet" for end in ("", "bounds.")}
-            for method in study.methods_of(experiment):
-                numbers = jobs.chunks(study, experiment, method, scale)
-                chunks = [f"{n}.{end}parquet" for n in numbers for end in ("", "times.", "traces.")]
-                made |= {f"runs/{experiment}/{method}/{n}" for n in (*chunks, "judgement.json")}
-        patterns = ("*.csv", "problems/[!.]*", "paper/[!.]*", "beyond/[!.]*", "runs/*/*/[!.]*")
-        files = (file for pattern in patterns for file in sorted((folder / key).glob(pattern)))
-        strangers += [file for file in files if str(file.relative_to(folder / key)) not in made]
-    return strangers
+def strangers(folder: Path, known: Collection[str]) -> list[Path]:
+    """Return the files of a scale, but for logs, that are none of those that its jobs make."""
+    files = (file.relative_to(folder) for file in sorted(folder.rglob("*")) if file.is_file())
+    return [
+        folder / file
+        for file in files
+        if str(file) not in known
+        and file.suffix != ".log"
+        and not any(part == "logs" or part.startswith(".") for part in file.parts)
+    ]
