@@ -2,7 +2,7 @@
 
 import platform
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -53,68 +53,32 @@ def main(
     loaded = reading.load(reading.read_config(config))
     listed = proof.listed(folder)
     made = _jobs(loaded, listed, folder)
-    left = stored.strangers(folder, made)
     changes = _changes(made, listed)
-    faults = dict.fromkeys(proof.unlisted(folder, {} if listed.fault else listed.digests))
-    if listed.fault:
-        faults[recheck.Difference(str(folder / proof.LIST), listed.fault)] = None
-
-    def add(found: Iterable[recheck.Difference]) -> set[str]:
-        """Add faults of further files, and return all files with faults."""
-        known = {fault.file for fault in faults}
-        faults.update(dict.fromkeys(fault for fault in found if fault.file not in known))
-        return {fault.file for fault in faults}
-
+    left = stored.strangers(folder, made)
+    wrong = {fault.file: fault for fault in proof.unlisted(folder, listed)}
     tasks = [*_tasks(loaded, made, changes, folder)]
     verdict = recheck.verify(tasks, cores, progress)
-    bad = add(verdict.faults)
-    tasks = [
-        task._replace(runs={file: task.runs[file] for file in task.runs if file not in bad})
-        for task in tasks
-        if bad.isdisjoint((task.problems, task.changed))
-    ]
-    again = recheck.made_again(tasks, cores, verdict.digest, all_)
-    add(again.faults)
-    progress(f"{again.runs} runs made again, {len(faults)} faults")
-    files, others = proof.differing(folder, left, config, listed.studies, cores)
-    add(others)
+    wrong = {fault.file: fault for fault in reversed(verdict.faults)} | wrong
+    again = recheck.made_again(tasks, wrong, cores, verdict.digest, all_)
+    progress(f"{again.runs} runs made again")
+    files, faults = proof.differing(folder, left, config, listed.studies, cores)
+    wrong = {fault.file: fault for fault in reversed((*again.faults, *faults))} | wrong
     words = _in_words(changes, listed)
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
-    equal = f"{again.runs} runs and {files} files made again, all equal"
+    answer = f"made by other code or libraries ({words})" if words else "made by this code"
     print(
-        *(f"{fault}{_since(fault, changes, folder)}" for fault in faults),
+        *(f"{fault}{_since(fault, changes, folder)}" for fault in wrong.values()),
         *(f"{file}: nothing makes it; delete it" for file in left),
         f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
         f"again; digest {verdict.digest}",
         f"verified with {', '.join(versions)}",
-        f"differs: {len(faults)} faults{words and f'; made by other code or libraries ({words})'}"
-        if faults
-        else f"made by other code or libraries ({words}): {equal}"
-        if words
-        else f"made by this code: {equal}",
+        f"differs: {len(wrong)} files; {answer}"
+        if wrong
+        else f"{answer}: {again.runs} runs and {files} files made again, all equal",
         sep="\n",
     )
-    if faults or left:
+    if wrong or left:
         sys.exit(1)
-
-
-def _in_words(changes: Mapping[str, set[str]], listed: proof.Listed) -> str:
-    """Return what of the accounts of all files is another now, in words; empty if nothing is."""
-    if not listed.accounts:
-        return f"no {proof.LIST} says which"
-    # The list holds all accounts, so that each change is one of its settings.
-    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
-    python = listed.versions.get("python"), platform.python_version()
-    if names and python[0] != python[1]:
-        names.add(f"python {python[0]} -> {python[1]}")
-    return ", ".join(sorted(names or changes.get(proof.LIST, ())))
-
-
-def _since(fault: recheck.Difference, changes: Mapping[str, set[str]], folder: Path) -> str:
-    """Return what has changed since the file of a fault was made."""
-    name = fault.file.removeprefix(f"{folder}/")
-    changed = ", ".join(sorted(changes.get(name, ())))
-    return f"; since it was made, other: {changed}" if changed else ""
 
 
 def _jobs(studies: Studies, listed: proof.Listed, folder: Path) -> dict[str, Job]:
@@ -159,3 +123,21 @@ def _tasks(
             {file: job.chunk for file, job in runs.items()},
             relative(studies[key].folder / "experiments.yaml") if "settings" in names else "",
         )
+
+
+def _in_words(changes: Mapping[str, set[str]], listed: proof.Listed) -> str:
+    """Return what of the accounts of all files is another now, in words; empty if nothing is."""
+    if not listed.accounts:
+        return f"no {proof.LIST} says which"
+    # The list holds all accounts, so that each change is one of its settings.
+    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
+    python, now = listed.versions["python"], platform.python_version()
+    if names and python != now:
+        names.add(f"python {python} -> {now}")
+    return ", ".join(sorted(names or changes[proof.LIST]))
+
+
+def _since(fault: recheck.Difference, changes: Mapping[str, set[str]], folder: Path) -> str:
+    """Return what has changed since the file of a fault was made."""
+    changed = ", ".join(sorted(changes.get(fault.file.removeprefix(f"{folder}/"), ())))
+    return f"; since it was made, other: {changed}" if changed else ""

@@ -14,7 +14,7 @@ import multiprocessing
 import platform
 import subprocess
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path as File
@@ -307,12 +307,20 @@ def _drive_judged(
 # Runs made again
 
 
-def made_again(tasks: list[StoredRuns], processes: int, digest: str, every: bool) -> RunsVerdict:
-    """How many runs were made again, and what of them differs from their rows in any bit: the
-    first of each file and one in `MADE_AGAIN`, which a digest chooses, or all.
+def made_again(
+    tasks: list[StoredRuns], wrong: Collection[str], processes: int, digest: str, every: bool
+) -> RunsVerdict:
+    """Return how many runs were made again, and what of them differs from their rows in any bit:
+    the first of each file and one in `MADE_AGAIN`, which a digest chooses, or all. wrong: files
+    with faults, of which nothing is made again.
     """
     again = partial(_again, digest=digest, share=1 if every else MADE_AGAIN)
-    files = [(task.problems, *each) for task in tasks for each in task.runs.items()]
+    files = [
+        (task.problems, file, chunk)
+        for task in tasks
+        for file, chunk in task.runs.items()
+        if not {task.problems, task.changed, file} & {*wrong}
+    ]
     return merged(_mapped(again, files, processes))
 
 

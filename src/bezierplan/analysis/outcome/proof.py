@@ -80,13 +80,15 @@ def listed(folder: Path) -> Listed:
     return found
 
 
-def unlisted(folder: Path, digests: dict[str, str]) -> list[Difference]:
-    """Return the files of a scale that are not what its list says."""
-    now = {name: sha256(folder / name) for name in digests}
+def unlisted(folder: Path, listed: Listed) -> list[Difference]:
+    """Return the files of a scale that are not what its list says; the list, if it is wrong."""
+    if listed.fault:
+        return [Difference(str(folder / LIST), listed.fault)]
+    now = {name: sha256(folder / name) for name in listed.digests}
     return [
         Difference(str(folder / name), "was changed since" if now[name] else "is not there")
-        for name in digests
-        if digests[name] != now[name]
+        for name, digest in listed.digests.items()
+        if digest != now[name]
     ]
 
 

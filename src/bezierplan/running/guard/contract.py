@@ -143,11 +143,13 @@ def _findings(
         ):
             yield ContractFinding(name, fact, not fault, fault or detail)
     draws = any(each.drew for own in made.values() for each in own)
-    fault = "" if draws else worker.UNDRAWN
+    differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
     if getattr(module, "deterministic", False):
-        differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
-        fault = "other plans from other generators, but deterministic = True" if differ else ""
-    yield ContractFinding("all problems", "random numbers", not fault, fault)
+        said = "other plans from other generators, but deterministic = True" if differ else ""
+        passed = not differ
+    else:
+        said, passed = "" if differ else worker.ALIKE[draws], draws or differ
+    yield ContractFinding("all problems", "random numbers", passed, said)
 
 
 def replies(

@@ -39,10 +39,13 @@ from bezierplan.workspaces.worlds import World
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
 """Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
 
-UNDRAWN = (
-    "draws no number from the rng that it is given, so that all repeats count as one; a planner "
-    "that never draws says deterministic = True"
-)
+ALIKE = {
+    False: "all repeats are equal and count as one, for it draws no number from the rng that it is "
+    "given; a planner that needs none says deterministic = True",
+    True: "all repeats are equal, though it draws numbers from the rng that it is given: has it a "
+    "seed of its own?",
+}
+"""What is said of a planner whose repeats are equal, by whether it drew random numbers."""
 
 # Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until
 # those after the first have taken this many seconds, or until one takes so long that its loading
