@@ -2,7 +2,7 @@
 
 import platform
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -55,14 +55,20 @@ def main(
     made = _jobs(loaded, listed, folder)
     changes = _changes(made, listed)
     left = stored.strangers(folder, made)
-    wrong = {fault.file: fault for fault in proof.unlisted(folder, listed)}
+    wrong: dict[str, recheck.Difference] = {}
+
+    def add(faults: Iterable[recheck.Difference]) -> None:
+        for fault in faults:
+            wrong.setdefault(fault.file, fault)
+
+    add(proof.unlisted(folder, listed))
     tasks = [*_tasks(loaded, made, changes, folder)]
     verdict = recheck.verify(tasks, cores, progress)
-    wrong = {fault.file: fault for fault in reversed(verdict.faults)} | wrong
+    add(verdict.faults)
     again = recheck.made_again(tasks, wrong, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
     files, faults = proof.differing(folder, left, config, listed.studies, cores)
-    wrong = {fault.file: fault for fault in reversed((*again.faults, *faults))} | wrong
+    add((*again.faults, *faults))
     words = _in_words(changes, listed)
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
     answer = f"made by other code or libraries ({words})" if words else "made by this code"

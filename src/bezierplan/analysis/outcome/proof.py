@@ -125,7 +125,9 @@ def differing(
             own = [file for file in files if file.relative_to(again).parts[0] in group]
             studies = [places[key] for key in places if key in group]
             faults += [
-                Difference(str(folder), f"what follows from its runs cannot be made again: {line}")
+                Difference(
+                    line.replace(str(again), str(folder)), "what follows cannot be made again"
+                )
                 for line in _make(own, narrowed(config, studies), away, processes)
             ]
         faults += [
@@ -161,8 +163,7 @@ def _make(files: list[Path], config: dict[str, Any], away: str, processes: int) 
     )
     if not done.returncode:
         return []
-    printed = (done.stdout + done.stderr).replace(f"{away}/", "")
-    lines = [line.strip() for line in printed.splitlines()]
+    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
     told = [line.partition(" (full account:")[0] for line in lines if "full account:" in line]
     # Snakemake ends with the files that a rule lacks.
     return [*dict.fromkeys(told)] or [line for line in lines if line][-1:]
