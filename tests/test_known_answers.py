@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from studies import study
 from test_claims import (
     ALL,
     LOWER,
@@ -26,10 +27,12 @@ from bezierplan.analysis.claims import effects, verdicts
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.numbers import baseline_comparison, comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
+from bezierplan.planners import warm_swarm
 from bezierplan.running import rides
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import Motion
-from bezierplan.workspaces.problem import Path
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import MovingCircles
 
 # --------------------------------------------------------------------------------------------------
@@ -345,3 +348,17 @@ def test_a_drive_out_of_the_field_is_as_deep_as_it_is_far_out(beyond, turned):
     verdict = motion_check.check(Motion(points, np.array([0.0, 19.0 + beyond, 40.0])), world)
     assert verdict.depth == pytest.approx(beyond)
     assert verdict.collision_at == pytest.approx(19.0 + beyond)
+
+
+def test_a_warm_start_begins_at_the_known_path():
+    """Whatever random numbers the rest of the swarm has."""
+    settings = study("tharwat2018").resolved("swarm_warm")
+    world = Circles((0.0, 20.0, 0.0, 20.0), np.array([[10.0, 10.0]]), np.array([2.0]), "m")
+    problem = Problem("one", world, (2.0, 10.0), (18.0, 10.0))
+    first, known = warm_swarm.resume(problem, np.random.default_rng(1), None, **settings)
+    assert first.claimed_feasible
+    for seed in range(5):
+        again, _ = warm_swarm.resume(problem, np.random.default_rng(seed), known, **settings)
+        assert again.history[0] <= first.objective + 1e-9
+    cold = warm_swarm.plan(problem, np.random.default_rng(2), **settings)
+    assert cold.history[0] > first.objective
