@@ -34,10 +34,3 @@ def relative(path: Path) -> str:
     """
     here = os.path.relpath(path)
     return str(path) if here.startswith("..") else here
-
-
-def in_tree(path: str | Path) -> str:
-    """A path relative to the tree or this package if it lies inside, wherever that is."""
-    file = Path(path).absolute()
-    homes = [home for home in (TREE, PACKAGE) if file.is_relative_to(home)]
-    return str(file.relative_to(homes[0])) if homes else str(path)

@@ -138,7 +138,10 @@ wildcard_constraints:
 
 def params(make, **more):
     """Params of a rule: its job, and the account by which Snakemake sees that it is another one."""
-    job = of(make, **more)
+    return params_of(of(make, **more))
+
+
+def params_of(job):
     return {"job": job, "account": lambda wildcards: job(wildcards).grounds}
 
 
@@ -266,6 +269,25 @@ def judged(wildcards):
     """Files of the results that the page shows, and of those that the summary compares with the
     baseline.
     """
-    makes = [of(stored.verified, root=ROOT, build=build), *([of(jobs.baseline_comparison)] if COMPARED else [])]
+    makes = [of(page.page, root=ROOT), *([of(jobs.baseline_comparison)] if COMPARED else [])]
     parts = [results(job)(wildcards) for job in makes]
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}
+
+
+def listed(wildcards):
+    """All files behind the page, by kind."""
+    kinds = ("readings", "claims_by_reading", "numbers_by_reading")
+    summary = ("numbers", "claims", "baseline_comparison") if COMPARED else ()
+    return {
+        **judged(wildcards),
+        "shown": shown(wildcards),
+        "summary": [f"results/{wildcards.scale}/{table}.csv" for table in summary],
+        "readings": of_readings(wildcards.scale, READ, *kinds),
+    }
+
+
+def verified(wildcards):
+    """The job that lists them."""
+    folder = f"results/{wildcards.scale}/"
+    files = {file.removeprefix(folder) for kind in listed(wildcards).values() for file in kind}
+    return stored.verified(STUDIES, wildcards.scale, ROOT, files, build)

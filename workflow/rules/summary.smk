@@ -101,12 +101,7 @@ SUMMARY = expand(
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
-        unpack(judged),
-        shown=shown,
-        summary=SUMMARY,
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, READ, "readings", "claims_by_reading", "numbers_by_reading"
-        ),
+        unpack(listed),
     output:
         "results/{scale}/verified.json",
     log:
@@ -114,7 +109,7 @@ rule verified:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(stored.verified, root=ROOT, build=build),
+        **params_of(verified),
     script:
         "../scripts/job.py"
 

@@ -20,7 +20,6 @@ from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.machine import opened
 from bezierplan.machine.digest import code_account, content_digest, module_of, sources
 from bezierplan.machine.modules import is_file
-from bezierplan.places import in_tree
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.inputs import Shows
@@ -68,9 +67,9 @@ class Job(ABC):
 
     @cached_property
     def account(self) -> dict[str, str]:
-        """What the job's files follow from, by name: digests of its values, of the code that works
-        and of its sources, and the versions of libraries that compute. Objects that have the same
-        text are the same; where files lie does not count.
+        """What the job's files follow from, by name: digests of its values (settings), of the code
+        that works and of its sources, and the versions of libraries that compute. Objects that have
+        the same text are the same; where files lie does not count.
         """
         names = [each.name for each in fields(self) if each.name not in ("sources", "folder")]
         text = repr([(name, getattr(self, name)) for name in names])
@@ -78,7 +77,7 @@ class Job(ABC):
         return (
             {"settings": hashlib.sha256(text.encode()).hexdigest()[:16]}
             | code_account(works, *sorted(set(self.modules())))
-            | {in_tree(file): content_digest(file) for file in self.sources}
+            | {"sources": content_digest(*self.sources)}
         )
 
     @cached_property

@@ -1,12 +1,11 @@
 """Check all results of a scale again, from runs to page."""
 
-import platform
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from bezierplan.analysis.jobs import Job, Runs
+from bezierplan.analysis.jobs import Job, Readings, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import config_of, cores, study_named
 from bezierplan.machine import opened
@@ -14,6 +13,9 @@ from bezierplan.places import relative
 from bezierplan.running import recheck
 from bezierplan.study import reading, stored
 from bezierplan.study.jobs import Studies
+
+# Jobs whose files do not follow from others, or take minutes.
+_KEPT = (Runs, Recheck, Readings, Verification)
 
 
 def main(
@@ -23,8 +25,8 @@ def main(
     cores: int = cores(),
     all_: bool = False,
 ) -> None:
-    """Print a line for each stored value or file that differs from what is made again, what was
-    checked, and the answer: `made by this code`, `made by other code or libraries`, or `differs`.
+    """Print a line for each file that differs from what is made again, what was checked, and the
+    answer: `made by this code`, `made by other code or libraries`, or `differs`.
 
     Runs are judged again; the first run of each file and one in a hundred, bounds and all files
     that follow from runs are made again. Ends with status 1 if anything differs, or nothing makes a
@@ -52,9 +54,8 @@ def main(
     config = proof.narrowed(config_of(), [*places.values()])
     loaded = reading.load(reading.read_config(config))
     listed = proof.listed(folder)
-    made = _jobs(loaded, listed, folder)
-    changes = _changes(made, listed)
-    left = stored.strangers(folder, made)
+    made = stored.jobs_of(loaded, folder, listed.digests)
+    changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
     wrong: dict[str, recheck.Difference] = {}
 
     def add(faults: Iterable[recheck.Difference]) -> None:
@@ -62,22 +63,31 @@ def main(
             wrong.setdefault(fault.file, fault)
 
     add(proof.unlisted(folder, listed))
-    tasks = [*_tasks(loaded, made, changes, folder)]
+    tasks = _tasks(loaded, made, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
     add(verdict.faults)
     again = recheck.made_again(tasks, wrong, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
-    files, faults = proof.differing(folder, left, config, listed.studies, cores)
+    follow = {name: not isinstance(made[name], _KEPT) for name in made}
+    files, faults = proof.differing(folder, follow, config, listed.digests, cores)
     add((*again.faults, *faults))
-    words = _in_words(changes, listed)
-    versions = (f"{name} {version}" for name, version in recheck.versions().items())
+    left, versions = stored.strangers(folder, made), recheck.versions()
+    # The list holds all accounts, so that each change is one of its own.
+    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
+    names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
+    moved = [
+        f"{name} {listed.versions.get(name)} -> {versions[name]}"
+        for name in versions
+        if names and versions[name] != listed.versions.get(name)
+    ]
+    words = ", ".join([*sorted(names - versions.keys()), *moved])
     answer = f"made by other code or libraries ({words})" if words else "made by this code"
     print(
-        *(f"{fault}{_since(fault, changes, folder)}" for fault in wrong.values()),
+        *wrong.values(),
         *(f"{file}: nothing makes it; delete it" for file in left),
         f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
         f"again; digest {verdict.digest}",
-        f"verified with {', '.join(versions)}",
+        f"verified with {', '.join(map(' '.join, versions.items()))}",
         f"differs: {len(wrong)} files; {answer}"
         if wrong
         else f"{answer}: {again.runs} runs and {files} files made again, all equal",
@@ -87,63 +97,25 @@ def main(
         sys.exit(1)
 
 
-def _jobs(studies: Studies, listed: proof.Listed, folder: Path) -> dict[str, Job]:
-    """Return the job that makes each file of a scale. What shows several studies shows those of
-    its list.
-    """
-    together = {key: studies[key] for key in studies if key in listed.studies} or studies
-    found = {}
-    for make, names, files in stored.made(studies, folder.resolve().name, f"{folder}/../"):
-        job = stored.build_job(studies if "study" in names else together, make, names)
-        found.update(dict.fromkeys(files, job))
-    return found
-
-
-def _changes(made: Mapping[str, Job], listed: proof.Listed) -> dict[str, set[str]]:
-    """Return what of the accounts of listed files is not that of their jobs, by file, in words."""
-    found = {}
-    for file, account in listed.accounts.items():
-        now = made[file].account | opened.contents(account) if file in made else {}
-        found[file] = {
-            f"{name} {account.get(name)} -> {now.get(name)}" if name in listed.versions else name
-            for name in account.keys() | now
-            if account.get(name) != now.get(name)
-        }
-    return found
+def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
+    """Return what of the account of a listed file is not that of its job."""
+    now = job.account | opened.contents(account) if job else {}
+    return {name for name in account.keys() | now if account.get(name) != now.get(name)}
 
 
 def _tasks(
     studies: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
-) -> Iterator[recheck.StoredRuns]:
-    """Yield the runs of each method in an experiment of which there are some."""
-    of_methods: dict[Path, dict[str, Runs]] = {}
-    for file, job in made.items():
-        place = folder / file
-        if isinstance(job, Runs) and place.stem.isdecimal() and place.parent.is_dir():
-            of_methods.setdefault(place.parent, {})[str(place)] = job
-    for place, runs in of_methods.items():
-        key, _, experiment, _ = place.relative_to(folder).parts
-        names = {name for file in runs for name in changes.get(file.removeprefix(f"{folder}/"), ())}
-        yield recheck.StoredRuns(
-            str(folder / key / "problems" / f"{experiment}.parquet"),
-            {file: job.chunk for file, job in runs.items()},
-            relative(studies[key].folder / "experiments.yaml") if "settings" in names else "",
-        )
-
-
-def _in_words(changes: Mapping[str, set[str]], listed: proof.Listed) -> str:
-    """Return what of the accounts of all files is another now, in words; empty if nothing is."""
-    if not listed.accounts:
-        return f"no {proof.LIST} says which"
-    # The list holds all accounts, so that each change is one of its settings.
-    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
-    python, now = listed.versions["python"], platform.python_version()
-    if names and python != now:
-        names.add(f"python {python} -> {now}")
-    return ", ".join(sorted(names or changes[proof.LIST]))
-
-
-def _since(fault: recheck.Difference, changes: Mapping[str, set[str]], folder: Path) -> str:
-    """Return what has changed since the file of a fault was made."""
-    changed = ", ".join(sorted(changes.get(fault.file.removeprefix(f"{folder}/"), ())))
-    return f"; since it was made, other: {changed}" if changed else ""
+) -> list[recheck.StoredRuns]:
+    """Return the runs of each method in an experiment of which there are some."""
+    found: dict[Path, recheck.StoredRuns] = {}
+    for name, job in made.items():
+        file = folder / name
+        if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
+            study, experiment = job.chunk.study, job.chunk.experiment
+            problems = folder / study / "problems" / f"{experiment}.parquet"
+            changed = relative(studies[study].folder / "experiments.yaml")
+            task = recheck.StoredRuns(
+                str(problems), {}, changed if "settings" in changes.get(name, ()) else ""
+            )
+            found.setdefault(file.parent, task).runs[str(file)] = job.chunk
+    return [*found.values()]

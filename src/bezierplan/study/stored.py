@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bezierplan.analysis.jobs import Job, Verification
+from bezierplan.analysis.outcome.proof import LIST
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import jobs, page
@@ -42,7 +43,6 @@ def made(studies: Studies, scale: str, root: str = page.RESULTS) -> Iterator[Mad
     yield Made(jobs.baseline_comparison, every, ["baseline_comparison.csv"])
     yield Made(jobs.worth, every, ["worth.csv"])
     yield Made(jobs.summary, every, ["numbers.csv", "claims.csv", "wholes.csv"])
-    yield Made(verified, shown, ["verified.json"])
     yield Made(page.page, shown, ["index.html"])
 
 
@@ -81,29 +81,33 @@ def _of_study(study: Study, scale: str) -> Iterator[Made]:
 def verified(
     studies: Studies,
     scale: str,
-    root: str = page.RESULTS,
-    build: Callable[[Callable[..., Job], Mapping[str, Any]], Job] | None = None,
+    root: str,
+    files: Collection[str],
+    build: Callable[[Callable[..., Job], Mapping[str, Any]], Job],
 ) -> Verification:
-    """Return the job that lists all that the page shows, with the account of each file. build: what
-    makes a job, where the workflow keeps those that it has made.
+    """Return the job that lists files of a scale, with the account of each, and that of the page.
+    build: `build_job` of these studies, which remembers jobs.
     """
-    build = build or partial(build_job, studies)
-    behind = page.shows(studies, scale, root)
-    compared = jobs.baseline_comparison(studies, scale).shows
-    known = {name: {**behind.get(name, {}), **compared.get(name, {})} for name in behind | compared}
-    artefacts = {key: page.shown_of(study, scale, root) for key, study in studies.items()}
     accounts = []
-    for make, names, files in made(studies, scale, root):
-        key, experiment = names.get("study"), names.get("experiment")
-        if experiment:
-            is_shown = names.get("method") in (None, *known.get(f"{key}/{experiment}", ()))
-        else:
-            artefact = names.get("table", names.get("figure"))
-            is_shown = make is not verified and artefact in (None, *artefacts.get(key, ()))
-        if is_shown:
+    for make, names, own in made(studies, scale, root):
+        if make is page.page or not {*own}.isdisjoint(files):
             job = build(make, names)
-            accounts.append((files, job.key, job.account))
-    return Verification(f"{root}{scale}", accounts, shows=behind)
+            accounts.append((own, job.key, job.account))
+    return Verification(f"{root}{scale}", accounts)
+
+
+def jobs_of(studies: Studies, folder: Path, listed: Collection[str]) -> dict[str, Job]:
+    """Return the job that makes each file of a scale. listed: the files of its list. What shows
+    several studies shows those of these files.
+    """
+    scale, root, found = folder.resolve().name, f"{folder}/../", {}
+    known = {name.split("/")[0] for name in listed}
+    together = {key: studies[key] for key in studies if key in known} or studies
+    for make, names, files in made(studies, scale, root):
+        job = build_job(studies if "study" in names else together, make, names)
+        found.update(dict.fromkeys(files, job))
+    found[LIST] = verified(together, scale, root, listed, partial(build_job, together))
+    return found
 
 
 def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,18 +17,6 @@ from bezierplan.running.recheck import Difference, sha256
 LIST, PAGE = "verified.json", "index.html"
 """The file that lists the digests of all others, and the page that names its own."""
 
-_FOLLOW = (
-    "*/problems/*.parquet",
-    "*/paper/*",
-    "*/beyond/*",
-    "*/*.csv",
-    "*/verdict.md",
-    "*.csv",
-    PAGE,
-)
-"""Files that follow from the studies and from runs."""
-_ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}
-"""Those by which Snakemake is asked for all of them."""
 _RULES = (
     "problems",
     "bounds",
@@ -56,11 +44,6 @@ class Listed(NamedTuple):
     accounts: dict[str, dict[str, str]]
     versions: dict[str, str]
     fault: str = ""
-
-    @property
-    def studies(self) -> set[str]:
-        """The studies whose files it names."""
-        return {name.split("/")[0] for name in self.digests}
 
 
 def listed(folder: Path) -> Listed:
@@ -101,41 +84,43 @@ def narrowed(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
 
 def differing(
     folder: Path,
-    left: Collection[Path],
+    made: Mapping[str, bool],
     config: dict[str, Any],
-    listed: set[str],
+    listed: Collection[str],
     processes: int,
 ) -> tuple[int, list[Difference]]:
     """Return how many files follow from studies and runs, and which of them are others if they are
-    made again, or cannot be. left: files that nothing makes. config: with the studies of the scale.
-    listed: those of its list, to which belongs what lies above all studies.
+    made again, or cannot be. made: the files of a scale, and whether they do. config: with its
+    studies. listed: files of its list, to whose studies belongs what lies above all of them.
     """
     places = {Path(study).resolve().name: study for study in config["studies"]}
+    known = {name.split("/")[0] for name in listed}
+    shown = [key for key in places if key in known] or [*places]
+    faults = []
     with tempfile.TemporaryDirectory() as away:
         again = Path(away, "results", folder.resolve().name)
-        shutil.copytree(folder, again, ignore=shutil.ignore_patterns("logs"))
-        for file in left:
-            (again / file.relative_to(folder)).unlink()
-        files = [file for pattern in _FOLLOW for file in sorted(again.glob(pattern))]
-        before = {file: sha256(file) for file in files}
-        shown = [key for key in places if key in listed] or [*places]
-        whole = [*shown, *(file.name for file in files if file.parent == again)]
-        faults = []
-        for group in [whole, *([key] for key in places if key not in shown)]:
-            own = [file for file in files if file.relative_to(again).parts[0] in group]
-            studies = [places[key] for key in places if key in group]
+        there = [name for name in made if (folder / name).is_file()]
+        for name in there:
+            (again / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(folder / name, again / name)
+        files = [name for name in there if made[name]]
+        for group in (shown, *([key] for key in places if key not in shown)):
+            own = [
+                again / name
+                for name in files
+                if (name.split("/")[0] if "/" in name else shown[0]) in group
+            ]
+            studies = narrowed(config, [places[key] for key in group])
             faults += [
-                Difference(
-                    line.replace(str(again), str(folder)), "what follows cannot be made again"
-                )
-                for line in _make(own, narrowed(config, studies), away, processes)
+                Difference(line, "what follows cannot be made again")
+                for line in _make(own, studies, away, processes)
             ]
         faults += [
-            Difference(str(folder / file.relative_to(again)), "made again, it is another one")
-            for file in files
-            if file.is_file() and sha256(file) != before[file]
+            Difference(str(folder / name), "made again, it is another one")
+            for name in files
+            if (again / name).is_file() and sha256(again / name) != sha256(folder / name)
         ]
-        return len(files), faults
+    return len(files), faults
 
 
 def _make(files: list[Path], config: dict[str, Any], away: str, processes: int) -> list[str]:
@@ -156,14 +141,15 @@ def _make(files: list[Path], config: dict[str, Any], away: str, processes: int) 
             *("--cores", str(processes), "--nolock", "--drop-metadata", "--keep-going"),
             *("--workflow-profile", "none", "--scheduler", "greedy"),
             *("--allowed-rules", *_RULES, "--"),
-            *(file for file in files if file.suffix in _ENDINGS),
+            *files,
         ],
         capture_output=True,
         text=True,
     )
     if not done.returncode:
         return []
-    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
+    printed = (done.stdout + done.stderr).replace(f"{away}/", "")
+    lines = [line.strip() for line in printed.splitlines()]
     told = [line.partition(" (full account:")[0] for line in lines if "full account:" in line]
     # Snakemake ends with the files that a rule lacks.
     return [*dict.fromkeys(told)] or [line for line in lines if line][-1:]
