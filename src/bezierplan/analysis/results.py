@@ -136,11 +136,10 @@ def _in_every_repeat(runs: pd.DataFrame) -> pd.DataFrame:
     if runs["drew"].all():
         return runs
     still = runs[~runs["drew"]]
-    answers = still[ANSWER].map(lambda each: each if np.isscalar(each) else tuple(each))
-    answers = answers.apply(tuple, axis=1)
+    answers = still[ANSWER].map(tuple).apply(tuple, axis=1)
     differ = answers.groupby([still["condition"], still["method"]]).transform("nunique") > 1
     # A copy of the generator has its numbers too.
-    runs = runs.assign(drew=runs["drew"] | differ.reindex(runs.index, fill_value=False))
+    runs.loc[differ.index[differ], "drew"] = True
     repeats = runs[["condition", "repeat"]].drop_duplicates()
     runs = runs.assign(place=np.arange(len(runs)))
     once = runs[~runs["drew"]].drop_duplicates(["condition", "method"]).drop(columns="repeat")

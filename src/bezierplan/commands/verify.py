@@ -1,7 +1,7 @@
 """Check all results of a scale again, from runs to page."""
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -56,21 +56,16 @@ def main(
     listed = proof.listed(folder)
     made = stored.jobs_of(loaded, folder, listed.digests)
     changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
-    wrong: dict[str, recheck.Difference] = {}
-
-    def add(faults: Iterable[recheck.Difference]) -> None:
-        for fault in faults:
-            wrong.setdefault(fault.file, fault)
-
-    add(proof.unlisted(folder, listed))
     tasks = _tasks(loaded, made, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
-    add(verdict.faults)
-    again = recheck.made_again(tasks, wrong, cores, verdict.digest, all_)
+    faults = [*proof.unlisted(folder, listed), *verdict.faults]
+    again = recheck.made_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
     follow = {name: not isinstance(made[name], _KEPT) for name in made}
-    files, faults = proof.differing(folder, follow, config, listed.digests, cores)
-    add((*again.faults, *faults))
+    files, others = proof.differing(folder, follow, config, listed.digests, cores)
+    wrong: dict[str, recheck.Difference] = {}
+    for fault in (*faults, *again.faults, *others):
+        wrong.setdefault(fault.file, fault)
     left, versions = stored.strangers(folder, made), recheck.versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))

@@ -8,6 +8,7 @@ import importlib.util
 import json
 import os
 import sys
+import traceback
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -22,11 +23,10 @@ RECORDS = Path(".snakemake") / "opened"
 SEEN: set[str] = set()
 """The files that were opened in this process, and in processes that it has awaited."""
 
-# What belongs to the system, to a library, to a user's caches or to this package.
-_SYSTEM = ("/proc", "/sys", "/dev", "/etc", "/usr", sys.prefix, sys.base_prefix)
+# What belongs to the system, to libraries, to this package or to a user's caches.
 _ELSEWHERE = (
-    *(f"{os.path.realpath(folder)}/" for folder in (*_SYSTEM, PACKAGE, cache_folder())),
-    f"{os.path.realpath(Path.home())}/.",
+    *("/proc/", "/sys/", "/dev/", "/etc/", "/usr/", f"{Path.home()}/."),
+    *map(os.path.realpath, (sys.prefix, sys.base_prefix, PACKAGE, cache_folder())),
 )
 
 
@@ -39,23 +39,15 @@ def watch() -> None:
 def _note(event: str, arguments: tuple[Any, ...]) -> None:
     if event != "open" or not isinstance(arguments[0], str | bytes):
         return
-    if arguments[2] & (os.O_WRONLY | os.O_RDWR) or not _is_of_study():
+    frames = (frame.f_globals for frame, _ in traceback.walk_stack(None))
+    of_study = any(str(own.get("__name__")).startswith(USERS) for own in frames)
+    if arguments[2] & (os.O_WRONLY | os.O_RDWR) or not of_study:
         return
     file = os.path.realpath(os.fsdecode(arguments[0]))
     if file.endswith(".pyc"):
         file = importlib.util.source_from_cache(file)
-    if "__pycache__" not in file and not file.startswith(_ELSEWHERE) and os.path.isfile(file):
+    if "__pycache__" not in file and not file.startswith(_ELSEWHERE):
         SEEN.add(file)
-
-
-def _is_of_study() -> bool:
-    """Return whether the code that runs was called by that of a study."""
-    frame = sys._getframe(2)
-    while frame:
-        if str(frame.f_globals.get("__name__")).startswith(USERS):
-            return True
-        frame = frame.f_back
-    return False
 
 
 def keep(job: str, known: Iterable[str | Path]) -> None:

@@ -5,7 +5,7 @@ again, and by which `verify` asks whether a file is still what its job makes.
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from bezierplan.analysis.jobs import Job, Verification
 from bezierplan.analysis.outcome.proof import LIST
@@ -16,15 +16,10 @@ from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
-
-class Made(NamedTuple):
-    """Files below the folder of a scale, and what makes them: a function that makes a job of a
-    study, or of all, and the names that it gets, a study's among them if it is of one.
-    """
-
-    make: Callable[..., Job]
-    names: dict[str, Any]
-    files: list[str]
+Made = tuple[Callable[..., Job], dict[str, Any], list[str]]
+"""A function that makes a job of a study, or of all; the names that it gets, a study's among them
+if it is of one; and the files that the job makes.
+"""
 
 
 def build_job(studies: Studies, make: Callable[..., Job], names: Mapping[str, Any]) -> Job:
@@ -35,58 +30,53 @@ def build_job(studies: Studies, make: Callable[..., Job], names: Mapping[str, An
 
 def made(studies: Studies, scale: str, root: str = page.RESULTS) -> Iterator[Made]:
     """Yield what the workflow can make at a scale. root: as for `page.shown_of`."""
+    every = {"scale": scale}
     for key, study in studies.items():
         for make, names, files in _of_study(study, scale):
-            names |= {"study": key, "scale": scale}
-            yield Made(make, names, [f"{key}/{file}" for file in files])
-    every, shown = {"scale": scale}, {"scale": scale, "root": root}
-    yield Made(jobs.baseline_comparison, every, ["baseline_comparison.csv"])
-    yield Made(jobs.worth, every, ["worth.csv"])
-    yield Made(jobs.summary, every, ["numbers.csv", "claims.csv", "wholes.csv"])
-    yield Made(page.page, shown, ["index.html"])
+            yield make, names | every | {"study": key}, [f"{key}/{file}" for file in files]
+    yield jobs.baseline_comparison, every, ["baseline_comparison.csv"]
+    yield jobs.worth, every, ["worth.csv"]
+    yield jobs.summary, every, ["numbers.csv", "claims.csv", "wholes.csv"]
+    yield page.page, every | {"root": root}, ["index.html"]
 
 
 def _of_study(study: Study, scale: str) -> Iterator[Made]:
     """Yield what is made of one study, with its files in its own folder."""
     for name in study.experiments:
         experiment = {"experiment": name}
-        yield Made(jobs.problems, experiment, [f"problems/{name}.parquet"])
-        yield Made(jobs.bounds, experiment, [f"problems/{name}.bounds.parquet"])
+        yield jobs.problems, experiment, [f"problems/{name}.parquet"]
+        yield jobs.bounds, experiment, [f"problems/{name}.bounds.parquet"]
         for method in study.methods_of(name):
-            runs, folder = {"experiment": name, "method": method}, f"runs/{name}/{method}"
+            runs, folder = experiment | {"method": method}, f"runs/{name}/{method}"
             ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
             for number in jobs.chunks(study, name, method, scale):
                 files = [f"{folder}/{number}{end}.parquet" for end in ends]
-                yield Made(jobs.runs, {**runs, "chunk": str(number)}, files)
-            yield Made(jobs.judgement, runs, [f"{folder}/judgement.json"])
+                yield jobs.runs, runs | {"chunk": str(number)}, files
+            yield jobs.judgement, runs, [f"{folder}/judgement.json"]
     for table in study.tables:
         of_runs = table in study.compared()
-        files = [file for file in study.files_of(table) if not file.endswith(".tex")]
+        csv, tex, *others = study.files_of(table)
         make = jobs.table_of_runs if of_runs else jobs.table_without_runs
-        yield Made(make, {"table": table}, files)
-        yield Made(jobs.latex, {"table": table}, [files[0].replace(".csv", ".tex")])
+        yield make, {"table": table}, [csv, *others]
+        yield jobs.latex, {"table": table}, [tex]
     for figure in study.figures:
-        yield Made(jobs.figure, {"figure": figure}, study.files_of(figure))
+        yield jobs.figure, {"figure": figure}, study.files_of(figure)
     if study.claims:
-        yield Made(jobs.claims, {}, ["claims.csv", "claim_checks.csv"])
+        yield jobs.claims, {}, ["claims.csv", "claim_checks.csv"]
     if page.has_audit(study):
-        yield Made(jobs.audit, {}, ["audit.csv"])
+        yield jobs.audit, {}, ["audit.csv"]
     if study.votes and scale == "extended":
         kinds = ("readings", "claims_by_reading", "numbers_by_reading")
-        yield Made(jobs.readings, {}, [f"{kind}.csv" for kind in kinds])
+        yield jobs.readings, {}, [f"{kind}.csv" for kind in kinds]
     if study.verdict_file():
-        yield Made(jobs.verdict, {}, ["verdict.md"])
+        yield jobs.verdict, {}, ["verdict.md"]
 
 
 def verified(
-    studies: Studies,
-    scale: str,
-    root: str,
-    files: Collection[str],
-    build: Callable[[Callable[..., Job], Mapping[str, Any]], Job],
+    studies: Studies, scale: str, root: str, files: Iterable[str], build: Callable[..., Job]
 ) -> Verification:
     """Return the job that lists files of a scale, with the account of each, and that of the page.
-    build: `build_job` of these studies, which remembers jobs.
+    build: `build_job` of these studies, which may remember jobs.
     """
     accounts = []
     for make, names, own in made(studies, scale, root):
@@ -100,13 +90,13 @@ def jobs_of(studies: Studies, folder: Path, listed: Collection[str]) -> dict[str
     """Return the job that makes each file of a scale. listed: the files of its list. What shows
     several studies shows those of these files.
     """
-    scale, root, found = folder.resolve().name, f"{folder}/../", {}
+    scale, root = folder.resolve().name, f"{folder}/../"
     known = {name.split("/")[0] for name in listed}
-    together = {key: studies[key] for key in studies if key in known} or studies
+    build = partial(build_job, {key: studies[key] for key in studies if key in known} or studies)
+    found: dict[str, Job] = {LIST: verified(*build.args, scale, root, listed, build)}
     for make, names, files in made(studies, scale, root):
-        job = build_job(studies if "study" in names else together, make, names)
+        job = build_job(studies, make, names) if "study" in names else build(make, names)
         found.update(dict.fromkeys(files, job))
-    found[LIST] = verified(together, scale, root, listed, partial(build_job, together))
     return found
 
 
