@@ -5,6 +5,7 @@ import shlex
 import sys
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 # The package of this tree, even if another is installed: for this process and for the scripts of
 # jobs. Kernels use one thread; Snakemake does the parallel part.
@@ -70,6 +71,23 @@ RESULTS = "results/{scale}/{study}"
 ROOT = f"{workflow.modifier.path_modifier.prefix or ''}{page.RESULTS}"
 
 
+PLACES = stored.places(STUDIES)
+BELOW = f"(?:/(?:{stored.READINGS}|{stored.ALTERNATIVES})/[^/]+)"
+"""Pattern of a place below that of a study."""
+
+
+def under(key, folder):
+    """The places in a folder of the results of a study."""
+    return [place for place in PLACES if place.startswith(f"{key}/{folder}/")]
+
+
+@cache
+def home(place, scale, experiment, method=""):
+    """Where the problems of an experiment are, or the runs of a method, for the study at a place.
+    """
+    return stored.home(PLACES, place, scale, experiment, method)
+
+
 def one_of(names):
     """Pattern of names; without names, one that never matches."""
     return "|".join(map(re.escape, sorted(set(names)))) or "(?!)"
@@ -80,7 +98,10 @@ def studies_with(files):
     table in one study may be another kind in another.
     """
     return (
-        "|".join(f"{re.escape(key)}(?=/(?:{one_of(names)})[./])" for key, names in files.items())
+        "|".join(
+            f"{re.escape(key)}(?:{BELOW})?(?=/(?:{one_of(names)})[./])"
+            for key, names in files.items()
+        )
         or "(?!)"
     )
 
@@ -127,7 +148,7 @@ DRAWN = {key: in_trees(study.figures) for key, study in STUDIES.items()}
 
 wildcard_constraints:
     scale=one_of(experiments.SCALES),
-    study=one_of(STUDIES),
+    study=f"(?:{one_of(STUDIES)})(?:{BELOW})?",
     experiment=one_of(name for study in STUDIES.values() for name in study.experiments),
     method=one_of(name for study in STUDIES.values() for name in study.methods),
     chunk="[0-9]+",
@@ -147,11 +168,11 @@ def params_of(job):
 
 @cache
 def made(make, names):
-    return stored.build_job(STUDIES, make, dict(names))
+    return stored.build_job(PLACES, make, dict(names))
 
 
 def build(make, names):
-    """The job that a function makes of a study, or of all."""
+    """The job that a function makes of the study at a place, or of all."""
     return made(make, tuple(sorted((name, names[name]) for name in names if name != "tree")))
 
 
@@ -178,19 +199,32 @@ def results(job, *kinds):
     return lambda wildcards: {kind: files_read(job, kind, wildcards) for kind in kinds or KINDS}
 
 
+def problems_of(wildcards):
+    """The file of the problems of runs."""
+    own = home(wildcards.study, wildcards.scale, wildcards.experiment)
+    return KINDS["problems"].format(
+        scale=wildcards.scale, study=own, experiment=wildcards.experiment
+    )
+
+
 def files_read(job, kind, wildcards):
     """Those of one kind."""
     found = []
     for name, methods in job(wildcards).shows.items():
         study, _, experiment = name.rpartition("/")
         study = study or wildcards.study
-        if kind == "traces" and not STUDIES[study].moves(experiment):
+        if kind == "traces" and not PLACES[study].moves(experiment):
             continue
-        place = {"scale": wildcards.scale, "study": study, "experiment": experiment}
+        place = {"scale": wildcards.scale, "experiment": experiment}
         chunks = [(method, n) for method in methods for n in range(methods[method])]
         # Problems have no methods.
         of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
-        found += [KINDS[kind].format(**place, method=method, chunk=n) for method, n in of_runs]
+        found += [
+            KINDS[kind].format(
+                **place, study=home(study, method=method, **place), method=method, chunk=n
+            )
+            for method, n in of_runs
+        ]
     return [*dict.fromkeys(found)]
 
 
@@ -216,26 +250,35 @@ def caption(wildcards, output):
 
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
-READ = [key for key, study in STUDIES.items() if study.votes]
+READ = [key for key, study in STUDIES.items() if study.readings]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def of_readings(scale, studies, *names):
-    """Files of the readings of some studies, which take minutes: at scale extended alone."""
-    return [
-        f"results/{scale}/{key}/{name}.csv"
-        for key in READ
-        if scale == "extended" and key in studies
-        for name in names
+def of_readings(file):
+    """A file of each joint reading of a study, at the scale at which claims are judged so."""
+    return lambda wildcards: [
+        f"results/{wildcards.scale}/{place}/{file}"
+        for place in under(wildcards.study, stored.READINGS)
+        if wildcards.scale == jobs.JUDGED_AT
     ]
 
 
-def evidence(scale, studies):
-    """What sentences take from many runs alone."""
-    return [
-        *of_readings(scale, studies, "readings"),
-        *([f"results/{scale}/worth.csv"] if scale == "extended" else []),
-    ]
+def of_alternatives(wildcards):
+    """The comparisons of claims by default and under each alternative, if a figure draws them."""
+    drawn = STUDIES[wildcards.study].figures[wildcards.figure].claims
+    places = under(wildcards.study, stored.ALTERNATIVES) if drawn else ()
+    return [f"results/{wildcards.scale}/{place}/claim_checks.csv" for place in places]
+
+
+def below(scale):
+    """Places of studies under other values on whose claims the page rests."""
+    found = []
+    for key, study in STUDIES.items():
+        figures = study.figures.keys() & {*page.shown_of(study, scale, ROOT)}
+        drawn = any(study.figures[name].claims for name in figures)
+        found += under(key, stored.READINGS) if scale == jobs.JUDGED_AT else []
+        found += under(key, stored.ALTERNATIVES) if drawn else []
+    return found
 
 
 def shown(wildcards):
@@ -249,6 +292,7 @@ def shown(wildcards):
     named = {
         "claims": CLAIMED,
         "claim_checks": CLAIMED,
+        "claims_by_reading": CLAIMED,
         "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
     }
     summary = [f"results/{wildcards.scale}/wholes.csv"] if COMPARED else []
@@ -271,18 +315,24 @@ def judged(wildcards):
     """
     makes = [of(page.page, root=ROOT), *([of(jobs.baseline_comparison)] if COMPARED else [])]
     parts = [results(job)(wildcards) for job in makes]
+    for place in below(wildcards.scale):
+        names = SimpleNamespace(scale=wildcards.scale, study=place)
+        parts.append(results(lambda names: build(jobs.claims, vars(names)))(names))
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}
 
 
 def listed(wildcards):
     """All files behind the page, by kind."""
-    kinds = ("readings", "claims_by_reading", "numbers_by_reading")
     summary = ("numbers", "claims", "baseline_comparison") if COMPARED else ()
     return {
         **judged(wildcards),
         "shown": shown(wildcards),
         "summary": [f"results/{wildcards.scale}/{table}.csv" for table in summary],
-        "readings": of_readings(wildcards.scale, READ, *kinds),
+        "below": [
+            f"results/{wildcards.scale}/{place}/{name}.csv"
+            for place in below(wildcards.scale)
+            for name in ("claims", "claim_checks")
+        ],
     }
 
 
@@ -290,4 +340,4 @@ def verified(wildcards):
     """The job that lists them."""
     folder = f"results/{wildcards.scale}/"
     files = {file.removeprefix(folder) for kind in listed(wildcards).values() for file in kind}
-    return stored.verified(STUDIES, wildcards.scale, ROOT, files, build)
+    return stored.verified(PLACES, wildcards.scale, ROOT, files, build)

@@ -70,7 +70,9 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        evidence=lambda wildcards: evidence(wildcards.scale, {wildcards.study}),
+        worth=lambda wildcards: (
+            [f"results/{wildcards.scale}/worth.csv"] if wildcards.scale == "extended" else []
+        ),
         sources=sources(of(jobs.verdict)),
     output:
         report(

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from bezierplan.analysis.jobs import Job, Readings, Recheck, Runs, Verification
+from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import config_of, cores, study_named
 from bezierplan.machine import opened
@@ -15,7 +15,7 @@ from bezierplan.study import reading, stored
 from bezierplan.study.jobs import Studies
 
 # Jobs whose files do not follow from others, or take minutes.
-_KEPT = (Runs, Recheck, Readings, Verification)
+_KEPT = (Runs, Recheck, Verification)
 
 
 def main(
@@ -52,11 +52,11 @@ def main(
     progress = partial(print, file=sys.stderr, flush=True)
     places = stored.places_of(folder, config_of(), map(study_named, studies))
     config = proof.narrowed(config_of(), [*places.values()])
-    loaded = reading.load(reading.read_config(config))
+    at = stored.places(reading.load(reading.read_config(config)))
     listed = proof.listed(folder)
-    made = stored.jobs_of(loaded, folder, listed.digests)
+    made = stored.jobs_of(at, folder, listed.digests)
     changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
-    tasks = _tasks(loaded, made, changes, folder)
+    tasks = _tasks(at, made, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
     faults = [*proof.unlisted(folder, listed), *verdict.faults]
     again = recheck.made_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
@@ -99,18 +99,22 @@ def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
 
 
 def _tasks(
-    studies: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
+    at: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
 ) -> list[recheck.StoredRuns]:
-    """Return the runs of each method in an experiment of which there are some."""
+    """Return the runs of each method in an experiment of which there are some. at: the study at
+    each place of results.
+    """
     found: dict[Path, recheck.StoredRuns] = {}
     for name, job in made.items():
         file = folder / name
         if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
-            study, experiment = job.chunk.study, job.chunk.experiment
-            problems = folder / study / "problems" / f"{experiment}.parquet"
-            changed = relative(studies[study].folder / "experiments.yaml")
+            place, experiment = name.partition("/runs/")[0], job.chunk.experiment
+            home = stored.home(at, place, folder.resolve().name, experiment)
+            changed = relative(at[place].folder / "experiments.yaml")
             task = recheck.StoredRuns(
-                str(problems), {}, changed if "settings" in changes.get(name, ()) else ""
+                str(folder / home / "problems" / f"{experiment}.parquet"),
+                {},
+                changed if "settings" in changes.get(name, ()) else "",
             )
             found.setdefault(file.parent, task).runs[str(file)] = job.chunk
     return [*found.values()]

@@ -26,6 +26,7 @@ _RULES = (
     "latex",
     "figure",
     "claims",
+    "claims_of_reading",
     "audit",
     "baseline_comparison",
     "worth",
