@@ -74,8 +74,8 @@ benchmark: .venv/ready ## what starts, planners, bounds, claims and page cost, c
 	$(SNAKEMAKE) smoke
 	$(RUN) tests/benchmark/run.py $(ARGS)
 
-mutants: .venv/ready-dev ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
-	$(RUN) tests/mutants/run.py $(ARGS)
+mutants: .venv/ready-dev ## mutation tests: of faults that the commit draws, tests must catch nine in ten (ARGS: how many, a word of their files)
+	$(RUN) tests/mutants.py $(ARGS)
 
 compare: .cache/comparison/ready ## planners of all studies compared with OMPL's, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'

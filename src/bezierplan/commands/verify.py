@@ -71,9 +71,9 @@ def main(
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
     names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
     moved = [
-        f"{name} {listed.versions.get(name)} -> {versions[name]}"
-        for name in versions
-        if names and versions[name] != listed.versions.get(name)
+        f"{name} {before} -> {versions.get(name)}"
+        for name, before in listed.versions.items()
+        if names and versions.get(name) != before
     ]
     words = ", ".join([*sorted(names - versions.keys()), *moved])
     answer = f"made by other code or libraries ({words})" if words else "made by this code"
