@@ -100,13 +100,14 @@ def nearest(fault: Fault) -> list[str]:
     return [test for *_, test in sorted(found)[:NEAREST]]
 
 
-def fails(tests: Iterable[str], tree: Path) -> bool:
-    """Return whether one of some tests fails in a tree, or has no end."""
+def failure(tests: Iterable[str], tree: Path) -> str:
+    """Return the end of what some tests say if one fails in a tree, or has no end."""
     pytest = [sys.executable, "-m", "pytest", "-q", "-x", "-m", "not rare", *tests]
     try:
-        return subprocess.run(pytest, cwd=tree, capture_output=True, timeout=1800).returncode != 0
+        done = subprocess.run(pytest, cwd=tree, capture_output=True, text=True, timeout=1800)
     except subprocess.TimeoutExpired:
-        return True
+        return "no end"
+    return done.stdout[-500:] if done.returncode else ""
 
 
 def is_caught(fault: Fault, tree: Path) -> bool:
@@ -114,11 +115,11 @@ def is_caught(fault: Fault, tree: Path) -> bool:
     file = tree / fault.file
     clean = file.read_bytes()
     file.write_bytes(clean[: fault.begin] + fault.new.encode() + clean[fault.end :])
-    caught = fails(nearest(fault), tree)
+    caught = failure(nearest(fault), tree)
     file.write_bytes(clean)
     word, old = "caught" if caught else "SURVIVES", " ".join(fault.old.split())
     print(f"{word:10}{fault.file}:{fault.line}: {old} -> {fault.new}", flush=True)
-    return caught
+    return bool(caught)
 
 
 def main(number: str = "40", word: str = "") -> int:
@@ -133,8 +134,8 @@ def main(number: str = "40", word: str = "") -> int:
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(shutil.copytree(ROOT, Path(folder, "tree"), ignore=LEFT_OUT))
         (tree / "results").symlink_to(ROOT / "results")
-        if fails({test for fault in drawn for test in nearest(fault)}, tree):
-            sys.exit("a test fails without a fault")
+        if said := failure({test for fault in drawn for test in nearest(fault)}, tree):
+            sys.exit(f"a test fails without a fault:\n{said}")
         caught = sum(is_caught(fault, tree) for fault in drawn)
     print(f"{caught} of {len(drawn)} faults caught")
     return int(caught < 0.9 * len(drawn))

@@ -168,7 +168,9 @@ def params_of(job):
 
 @cache
 def made(make, names):
-    return stored.build_job(PLACES, make, dict(names))
+    others = dict(names)
+    place = others.pop("study", None)
+    return make(PLACES[place] if place else STUDIES, **others)
 
 
 def build(make, names):
@@ -340,4 +342,4 @@ def verified(wildcards):
     """The job that lists them."""
     folder = f"results/{wildcards.scale}/"
     files = {file.removeprefix(folder) for kind in listed(wildcards).values() for file in kind}
-    return stored.verified(PLACES, wildcards.scale, ROOT, files, build)
+    return stored.verified(PLACES, wildcards.scale, ROOT, files)

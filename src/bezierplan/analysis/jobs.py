@@ -394,6 +394,7 @@ class Verification(Job):
         """List the files."""
         import json
 
+        from bezierplan.analysis.outcome import proof
         from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
@@ -402,7 +403,7 @@ class Verification(Job):
         )
         content = recheck.sound(verdict) | {
             "digest": verdict.digest,
-            "made_by": recheck.made_by(),
+            "made_by": proof.made_by(),
             "versions": recheck.versions(),
             "accounts": [
                 (["verified.json"], self.account),

@@ -108,11 +108,16 @@ def _syntax(file: Path) -> _Syntax:
         parsed = _parsed(source)
     # Nothing depends on whether it can be kept.
     with contextlib.suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        part = kept.with_suffix(f".{os.getpid()}")
-        part.write_text(json.dumps(parsed))
-        part.replace(kept)
+        keep_json(parsed, kept)
     return parsed
+
+
+def keep_json(content: Any, file: Path) -> None:
+    """Write plain values to a file, which is whole whenever it is read."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_suffix(f".{os.getpid()}")
+    part.write_text(json.dumps(content))
+    part.replace(file)
 
 
 def docstring(module: str) -> str:

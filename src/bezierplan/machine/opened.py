@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bezierplan.machine.digest import content_digest
+from bezierplan.machine.digest import content_digest, keep_json
 from bezierplan.machine.modules import USERS
 from bezierplan.places import PACKAGE, cache_folder, relative
 
@@ -54,11 +54,7 @@ def keep(job: str, known: Iterable[str | Path]) -> None:
     """Keep the files that this process has noted but for some, for the job of a key."""
     before, files = kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, known)})
     if new := {f"{OPENS}{relative(Path(file))}" for file in files} - before.keys():
-        file = RECORDS / f"{job}.json"
-        file.parent.mkdir(parents=True, exist_ok=True)
-        part = file.with_suffix(f".{os.getpid()}")
-        part.write_text(json.dumps(before | contents(sorted(new))))
-        part.replace(file)
+        keep_json(before | contents(sorted(new)), RECORDS / f"{job}.json")
 
 
 def kept(job: str) -> dict[str, str]:

@@ -12,7 +12,6 @@ import json
 import math
 import multiprocessing
 import platform
-import subprocess
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -23,10 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-import bezierplan
 from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.places import TREE
 from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
@@ -145,19 +142,6 @@ def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that compute."""
     names = sorted({name for names in COMPUTING.values() for name in names})
     return {"python": platform.python_version()} | {name: library_version(name) for name in names}
-
-
-def made_by() -> str:
-    """Return the version of this package, and of a clone the commit with its date."""
-    version = f"bezierplan {bezierplan.__version__}"
-    if not (TREE / ".git").exists():
-        return version
-    command = ["git", "-C", str(TREE), "log", "-1", "--format=%h of %cs"]
-    try:
-        found = subprocess.run(command, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError):  # such as no git, or another user's clone
-        return version
-    return f"{version}, commit {found.stdout.strip()}"
 
 
 def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:

@@ -2,14 +2,13 @@
 again, and by which `verify` asks whether a file is still what its job makes.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from functools import partial
+from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job, Verification
-from bezierplan.analysis.outcome.proof import LIST
+from bezierplan.analysis.outcome.proof import LIST, PAGE
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import alternatives, jobs, page
@@ -17,11 +16,8 @@ from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
-Made = tuple[Callable[..., Job], dict[str, Any], list[str]]
-"""A function that makes a job of a study, or of all; the names that it gets, a study's among them
-if it is of one; and the files that the job makes.
-"""
-
+Made = tuple[Job, list[str]]
+"""A job and the files that it makes, below the folder of a scale."""
 
 READINGS, ALTERNATIVES = "readings", "alternatives"
 """Folders in the results of a study, of those of the study under other values."""
@@ -52,86 +48,76 @@ def home(places: Studies, place: str, scale: str, experiment: str, method: str =
     return default if shared else place
 
 
-def build_job(places: Studies, make: Callable[..., Job], names: Mapping[str, Any]) -> Job:
-    """Return the job that a function makes."""
-    others = {name: value for name, value in names.items() if name != "study"}
-    own = {key: study for key, study in places.items() if key == study.key}
-    return make(places[names["study"]] if "study" in names else own, **others)
-
-
 def made(
     places: Studies, scale: str, below: Collection[str], root: str = page.RESULTS
 ) -> Iterator[Made]:
     """Yield what the workflow can make at a scale. below: places of studies under other values that
     count. root: as for `page.shown_of`.
     """
-    every = {"scale": scale}
+    studies = {place: study for place, study in places.items() if place == study.key}
     for place, study in places.items():
-        if place == study.key:
-            parts = chain(_results(places, place, scale, study.experiments), _of_study(study))
+        if place in studies:
+            parts = chain(_results(places, place, scale, study.experiments), _shown(study, scale))
         elif place in below:
             behind = alternatives.experiments_of_claims(study.claims)
-            claims = jobs.claims, {}, ["claims.csv", "claim_checks.csv"]
+            claims = jobs.claims(study, scale), ["claims.csv", "claim_checks.csv"]
             parts = chain(_results(places, place, scale, behind), [claims])
         else:
             continue
-        for make, names, files in parts:
-            yield make, names | every | {"study": place}, [f"{place}/{file}" for file in files]
-    yield jobs.baseline_comparison, every, ["baseline_comparison.csv"]
-    yield jobs.worth, every, ["worth.csv"]
-    yield jobs.summary, every, ["numbers.csv", "claims.csv", "wholes.csv"]
-    yield page.page, every | {"root": root}, ["index.html"]
+        yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
+    yield jobs.baseline_comparison(studies, scale), ["baseline_comparison.csv"]
+    yield jobs.worth(studies, scale), ["worth.csv"]
+    yield jobs.summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
+    yield page.page(studies, scale, root), [PAGE]
 
 
 def _results(places: Studies, place: str, scale: str, experiments: Iterable[str]) -> Iterator[Made]:
     """Yield problems and runs of experiments that are made at a place, with files in its folder."""
     study = places[place]
     for name in experiments:
-        experiment = {"experiment": name}
         if home(places, place, scale, name) == place:
-            yield jobs.problems, experiment, [f"problems/{name}.parquet"]
-            yield jobs.bounds, experiment, [f"problems/{name}.bounds.parquet"]
+            yield jobs.problems(study, scale, name), [f"problems/{name}.parquet"]
+            yield jobs.bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
         for method in study.methods_of(name):
             if home(places, place, scale, name, method) != place:
                 continue
-            runs, folder = experiment | {"method": method}, f"runs/{name}/{method}"
+            folder = f"runs/{name}/{method}"
             ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
             for number in jobs.chunks(study, name, method, scale):
                 files = [f"{folder}/{number}{end}.parquet" for end in ends]
-                yield jobs.runs, runs | {"chunk": str(number)}, files
-            yield jobs.judgement, runs, [f"{folder}/judgement.json"]
+                yield jobs.runs(study, scale, name, method, str(number)), files
+            yield jobs.judgement(study, scale, name, method), [f"{folder}/judgement.json"]
 
 
-def _of_study(study: Study) -> Iterator[Made]:
+def _shown(study: Study, scale: str) -> Iterator[Made]:
     """Yield what shows the runs of a study, with files in its folder."""
     for table in study.tables:
-        of_runs = table in study.compared()
         csv, tex, *others = study.files_of(table)
+        of_runs = table in study.compared()
         make = jobs.table_of_runs if of_runs else jobs.table_without_runs
-        yield make, {"table": table}, [csv, *others]
-        yield jobs.latex, {"table": table}, [tex]
+        yield make(study, scale, table), [csv, *others]
+        yield jobs.latex(study, scale, table), [tex]
     for figure in study.figures:
-        yield jobs.figure, {"figure": figure}, study.files_of(figure)
+        yield jobs.figure(study, scale, figure), study.files_of(figure)
     if study.claims:
-        yield jobs.claims, {}, ["claims.csv", "claim_checks.csv", "claims_by_reading.csv"]
+        files = ["claims.csv", "claim_checks.csv", "claims_by_reading.csv"]
+        yield jobs.claims(study, scale), files
     if page.has_audit(study):
-        yield jobs.audit, {}, ["audit.csv"]
+        yield jobs.audit(study, scale), ["audit.csv"]
     if study.verdict_file():
-        yield jobs.verdict, {}, ["verdict.md"]
+        yield jobs.verdict(study, scale), ["verdict.md"]
 
 
-def verified(
-    places: Studies, scale: str, root: str, files: Collection[str], build: Callable[..., Job]
-) -> Verification:
-    """Return the job that lists files of a scale, with the account of each, and that of the page.
-    build: `build_job` of these places, which may remember jobs.
+def verified(places: Studies, scale: str, root: str, files: Collection[str]) -> Verification:
+    """Return the job that lists files of a scale, with the account of each, and that of the
+    page.
     """
-    accounts = []
     below = {"/".join(file.split("/")[:3]) for file in files}
-    for make, names, own in made(places, scale, below, root):
-        if make is page.page or not {*own}.isdisjoint(files):
-            job = build(make, names)
-            accounts.append((own, job.key, job.account))
+    accounts = [
+        (own, job.key, job.account)
+        for job, own in made(places, scale, below, root)
+        if own == [PAGE] or not {*own}.isdisjoint(files)
+    ]
     return Verification(f"{root}{scale}", accounts)
 
 
@@ -141,14 +127,15 @@ def jobs_of(places: Studies, folder: Path, listed: Collection[str]) -> dict[str,
     """
     scale, root = folder.resolve().name, f"{folder}/../"
     known = {name.split("/")[0] for name in listed}
-    shown = {place: own for place, own in places.items() if own.key in known} or places
-    build = partial(build_job, shown)
-    found: dict[str, Job] = {LIST: verified(shown, scale, root, listed, build)}
+    shown = {place: study for place, study in places.items() if study.key in known} or places
     below = [place for place in places if (folder / place).is_dir()]
-    for make, names, files in made(places, scale, below, root):
-        job = build_job(places, make, names) if "study" in names else build(make, names)
-        found.update(dict.fromkeys(files, job))
-    return found
+    found = {
+        file: job
+        for studies in (places, shown)
+        for job, files in made(studies, scale, below, root)
+        for file in files
+    }
+    return found | {LIST: verified(shown, scale, root, listed)}
 
 
 def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:

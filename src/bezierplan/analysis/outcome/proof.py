@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import bezierplan
 from bezierplan.places import TREE
 from bezierplan.running.recheck import Difference, sha256
 
@@ -74,6 +75,19 @@ def unlisted(folder: Path, listed: Listed) -> list[Difference]:
         for name, digest in listed.digests.items()
         if digest != now[name]
     ]
+
+
+def made_by() -> str:
+    """Return the version of this package, and of a clone the commit with its date."""
+    version = f"bezierplan {bezierplan.__version__}"
+    if not (TREE / ".git").exists():
+        return version
+    command = ["git", "-C", str(TREE), "log", "-1", "--format=%h of %cs"]
+    try:
+        found = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):  # such as no git, or another user's clone
+        return version
+    return f"{version}, commit {found.stdout.strip()}"
 
 
 def narrowed(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:

@@ -15,10 +15,10 @@ from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
 from bezierplan.analysis.numbers import baseline_comparison
 from bezierplan.analysis.outcome import headline
+from bezierplan.analysis.outcome.proof import made_by
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.running.inputs import Files
-from bezierplan.running.recheck import made_by
 
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {
