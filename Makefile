@@ -18,7 +18,7 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help reproduce smoke smoke-digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome lock newest clean distclean anew
+.PHONY: help reproduce smoke digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-19s %s\n", $$1, $$2 }'
@@ -31,8 +31,10 @@ smoke: .venv/ready ## the same with few runs, into results/smoke
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke $(ARGS)
 
-smoke-digests: smoke ## keep the digests of its tables and claims, which `make test` compares; the commit says why they change
-	$(RUN) tests/smoke.py
+digests: .venv/ready ## keep the digests of scales smoke and full, and name those that change; the commit says why (ARGS: one of the scales)
+	@$(UNLOCK)
+	$(SNAKEMAKE) $(or $(subst full,all,$(ARGS)),smoke all)
+	$(RUN) tests/digests.py $(ARGS)
 
 beyond: .venv/ready ## what goes beyond the papers: variants, baselines, profiles, our own measures and maps; and the page with it
 	@$(UNLOCK)
@@ -72,8 +74,8 @@ benchmark: .venv/ready ## what starts, planners, bounds, claims and page cost, c
 	$(SNAKEMAKE) smoke
 	$(RUN) tests/benchmark/run.py $(ARGS)
 
-mutants: .venv/ready-dev ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
-	$(RUN) tests/mutants/run.py $(ARGS)
+mutants: .venv/ready-dev ## mutation tests: of faults that the commit draws, tests must catch nine in ten (ARGS: how many, a word of their files)
+	$(RUN) tests/mutants.py $(ARGS)
 
 compare: .cache/comparison/ready ## planners of all studies compared with OMPL's, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'

@@ -201,7 +201,7 @@ def test_what_ends_the_runs_is_one_fault(case, tmp_path):
             "    start, target",
             "    rng = np.random.default_rng(5)\n    start, target",
             "random numbers",
-            "draws no number from the rng that it is given",
+            "all repeats are equal and count as one, for it draws no number",
         ),
     ],
 )

@@ -1,6 +1,11 @@
 """Digests of code: what counts and what does not."""
 
+import ast
+import copy
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -123,7 +128,7 @@ def test_syntax_that_was_kept_is_read_and_a_damaged_copy_is_made_anew(tree):
     assert digest(tree, module) == first
     assert [file.read_bytes() for file in kept] == contents
     for file in kept:
-        file.write_text('["another tree", []]')
+        file.write_text('["another tree", [], ""]')
     assert digest(tree, module) != first
 
 
@@ -164,17 +169,73 @@ def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
 
 def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_on(monkeypatch):
     """A straight line needs no library of geometry, a table of runs needs pandas."""
-    real = digests.library_version
     line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.numbers.tables"
-    before = {name: digests.versioned_digest(name) for name in (line, table)}
-    monkeypatch.setattr(
-        digests, "library_version", lambda name: "99" if name == "pandas" else real(name)
-    )
-    assert digests.versioned_digest(line) == before[line]
-    assert digests.versioned_digest(table) != before[table]
-    assert " pandas 99" in digests.versioned_digest(table)
-    monkeypatch.setattr(
-        digests, "library_version", lambda name: "99" if name == "numpy" else real(name)
-    )
-    assert digests.versioned_digest(line) != before[line]
-    assert digests.versioned_digest(line).split()[0] == digests.source_digest(line)
+    before = {name: digests.code_account((), name) for name in (line, table)}
+    assert {"code", "numpy"} <= before[line].keys()
+    assert "pandas" not in before[line]
+    assert "pandas" in before[table]
+    digests.code_account.cache_clear()
+    monkeypatch.setattr(digests, "library_version", lambda name: f"99 of {name}")
+    after = digests.code_account((), table)
+    digests.code_account.cache_clear()
+    assert after["code"] == before[table]["code"]
+    assert after["pandas"] == "99 of pandas"
+
+
+# Every kind of statement, some with parts that a newer Python has; text that tokens divide anew.
+WORDS = """
+import a.b as c
+from . import d
+
+class E(F, g=1): pass
+@h
+async def i(j, /, k: int = 1, *l, m=None, **n) -> None:
+    "Words."
+    async with o() as p, q: pass
+    async for r in s: await t
+    else: pass
+    return [u for v in w if x async for y in z]
+def _(*, a): yield; yield from a; global b; nonlocal_ = lambda: (c := 1)
+f"{d!r:>{e}} {{f}} {g=} {h:%Y}" 'i' f'{j["k"]}' u"l" "" f""; b"m" b""; f"{n:}"
+match n:
+    case [1, *_, o] | {"p": q, **r} | S(t=2) as u if v: pass
+try: w
+except* x as y: raise z from None
+while 1_000 < 0x1F <= 1e3 != 1j: a[b:c, ::d] = ~e ** -f @ g // h << ...; del i; assert j, "k"
+"""
+
+
+def test_a_digest_is_the_same_on_every_python(tmp_path):
+    """Of a file with all syntax, and of what runs a chunk: on those that are installed here."""
+    file = tmp_path / "syntax.py"
+    file.write_text(WORDS)
+    code = ASK.format(modules=(str(file), "bezierplan.running.execution"))
+    names = {f"python3.{minor}" for minor in (11, 12, 13)} - {f"python3.{sys.version_info.minor}"}
+    found = {}
+    for name in (sys.executable, *filter(shutil.which, sorted(names))):
+        answer = subprocess.run(
+            [name, "-c", code],
+            env={
+                "PATH": os.environ["PATH"],
+                "PYTHONPATH": str(SOURCE),
+                "XDG_CACHE_HOME": str(tmp_path),
+            },
+            capture_output=True,
+            text=True,
+        )
+        if answer.returncode == 0 or name == sys.executable:
+            found[name] = answer.stdout
+    assert len(set(found.values())) == 1
+    if len(found) == 1:
+        pytest.skip("no other Python from 3.11 to 3.13 is installed here")
+
+
+def test_fields_that_are_empty_do_not_count():
+    """A newer Python has more of them, such as the parameters of types."""
+    (function,) = ast.parse("def a(b): return b").body
+    with_more = copy.copy(function)
+    with_more._fields = (*function._fields, "newer", "newest")
+    with_more.newer, with_more.newest = [], None
+    assert digests._nested(with_more) == digests._nested(function)
+    with_more.newer = [ast.Constant(None)]
+    assert digests._nested(with_more) != digests._nested(function)

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from studies import built, studies
 
+from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.jobs import descriptions
@@ -133,6 +134,10 @@ def of_figure(layout, name, folder):
                 )
                 if not in_name and not in_ticks:
                     yield f"{word}: not in {unit[0]}: {seen}"
+    if "words" in layout.form:
+        cells = text(folder / f"{name}.csv")["text"]
+        if (seen := sorted({cell for cell in cells if cell.isalpha()})) != layout.form["words"]:
+            yield f"words: {seen}"
     series = [*layout.names.values()] if isinstance(layout.series, dict) else layout.series
     if len(series) > 1 and legend[: len(series)] != series:
         at_axis = any(series == seen[1:][: len(series)] for seen in axes["x"])
@@ -196,6 +201,7 @@ def facts(own, experiment, where):
         if not all(selected(*each) for each in [*plain.items(), ("problem", problem)]):
             continue
         yield from plain.items()
+        yield "grids", f"{plain.get('start_cell')} to {plain.get('target_cell')}"
         layouts.add(plain.get("layout"))
         if plain["workspace"] not in homes:
             homes.add(plain["workspace"])
@@ -216,15 +222,40 @@ def of_workspace(home):
     if isinstance(home, Circles):
         yield from [("circles", len(home.centres)), ("bounds", [*home.bounds])]
     else:
-        yield "cells", " x ".join(map(str, home.occupied.shape[::-1]))
+        rows, columns = home.occupied.shape
+        # From the middles of the first cells to those of the last.
+        yield "size", f"{(columns - 1) * home.cell:.1f} x {(rows - 1) * home.cell:.1f}"
+        yield "cells", f"{columns} x {rows}"
         yield from [("cell", home.cell), ("cover", 100 * home.occupied.mean())]
 
 
+def of_drawing(own, name):
+    """Name and value of everything that print can say of a figure that shows no runs."""
+    for panel in getattr(own.figures.get(name), "panels", []):
+        yield from panel.plain().get("arguments", {}).items()
+        if panel.plain().get("data") == "chaotic_sequences":
+            constants = vars(chaotic_maps).items()
+            yield from ((key.lower(), value) for key, value in constants if key.isupper())
+        if published := panel.plain().get("published"):
+            marks = pd.read_csv(own.folder / "published" / f"{published}.csv")
+            yield "obstacles", int((marks["mark"] == "circle").sum())
+            if "candidate" in marks:
+                yield "candidates", marks["candidate"].nunique()
+                rings = marks[marks["group"].astype(str).str.startswith("ring")].groupby("group")[
+                    "x"
+                ]
+                yield from (("r", round(float(r), 9)) for r in (rings.max() - rings.min()) / 2)
+            if "part" in marks:
+                genes = marks.loc[marks["part"] == "genes", "text"].dropna()
+                yield "genes", [int(gene) for gene in genes if gene.isdecimal()]
+
+
 def unmet(own, name, conditions, where):
-    """Printed conditions that the runs behind an artefact do not have: name, print and ours. A
+    """Printed conditions that what is behind an artefact does not have: name, print and ours. A
     condition that is named like a method or a route is of its runs alone.
     """
     every = [fact for place, only in behind(own, name) for fact in facts(own, place, only | where)]
+    every += of_drawing(own, name)
     for key, printed in conditions.items():
         if isinstance(printed, dict):
             column = "method" if key in own.methods else "route"

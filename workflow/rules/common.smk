@@ -5,6 +5,7 @@ import shlex
 import sys
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 # The package of this tree, even if another is installed: for this process and for the scripts of
 # jobs. Kernels use one thread; Snakemake does the parallel part.
@@ -20,7 +21,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
-from bezierplan.study import alternatives, experiments, jobs, page, reading
+from bezierplan.study import experiments, jobs, page, reading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -79,43 +80,24 @@ OF_SCALE = {
 # Planners of studies, which that interpreter reads, are known by now.
 sys.executable = shlex.quote(sys.executable)
 RESULTS = "results/{scale}/{study}"
+# The folder of results: for the page, which looks what there is.
+ROOT = f"{PREFIX}{page.RESULTS}"
 
 
-UNDER = {
-    "readings": alternatives.joint_readings,
-    "alternatives": alternatives.single_alternatives,
-}
-"""Folder in the results of a study -> the studies under other values, whose results it has."""
-
-
-@cache
-def under(key, folder):
-    """The studies in a folder of a study, each by the place of its results."""
-    return {f"{key}/{folder}/{name}": own for name, own in UNDER[folder](STUDIES[key]).items()}
-
-
-def study_of(place):
-    """The study whose results are at a place."""
-    key, *below = place.split("/")
-    return under(key, below[0])[place] if below else STUDIES[key]
-
-
-@cache
-def home(scale, study, experiment, method=""):
-    """Where the problems of an experiment are, or the runs of a method, for the study at a place.
-    What a reading does not change, it shares with the study; what an alternative does not, with the
-    default among the alternatives, which has as few runs.
-    """
-    key, *below = study.split("/")
-    if not below or study == (default := DEFAULTS[below[0]].format(key)):
-        return study
-    made = jobs.is_shared(study_of(study), study_of(default), scale, experiment, method)
-    return default if made else study
-
-
-DEFAULTS = {"readings": "{}", "alternatives": f"{{}}/alternatives/{alternatives.DEFAULT}"}
-BELOW = "(?:/(?:" + "|".join(UNDER) + ")/[^/]+)"
+PLACES = stored.places(STUDIES)
+BELOW = f"(?:/(?:{stored.READINGS}|{stored.ALTERNATIVES})/[^/]+)"
 """Pattern of a place below that of a study."""
+
+
+def under(key, folder):
+    """The places in a folder of the results of a study."""
+    return [place for place in PLACES if place.startswith(f"{key}/{folder}/")]
+
+
+@cache
+def home(place, scale, experiment, method=""):
+    """Where the problems of an experiment are, or the runs of a method, for the study at a place."""
+    return stored.home(PLACES, place, scale, experiment, method)
 
 
 def one_of(names):
@@ -188,22 +170,29 @@ wildcard_constraints:
 
 
 def params(make, **more):
-    """Params of a rule: its job, and the digest by which Snakemake sees that it is another one."""
-    job = of(make, **more)
-    return {"job": job, "digest": lambda wildcards: job(wildcards).digest}
+    """Params of a rule: its job, and the account by which Snakemake sees that it is another one."""
+    return params_of(of(make, **more))
+
+
+def params_of(job):
+    return {"job": job, "account": lambda wildcards: job(wildcards).grounds}
 
 
 @cache
-def made(make, more, wildcards):
-    names = dict(wildcards)
-    names.pop("tree", None)
-    study = names.pop("study", None)
-    return make(study_of(study) if study else OF_SCALE[names["scale"]], **names, **dict(more))
+def made(make, names):
+    others = dict(names)
+    place = others.pop("study", None)
+    return make(PLACES[place] if place else OF_SCALE[others["scale"]], **others)
+
+
+def build(make, names):
+    """The job that a function makes of the study at a place, or of all those of a scale."""
+    return made(make, tuple(sorted((name, names[name]) for name in names if name != "tree")))
 
 
 def of(make, **more):
-    """The job that a function makes of a study, or of all, for the wildcards of a rule."""
-    return lambda wildcards: made(make, tuple(more.items()), tuple(sorted(wildcards.items())))
+    """The same for the wildcards of a rule."""
+    return lambda wildcards: build(make, {**dict(wildcards), **more})
 
 
 KINDS = {
@@ -226,7 +215,7 @@ def results(job, *kinds):
 
 def problems_of(wildcards):
     """The file of the problems of runs."""
-    own = home(wildcards.scale, wildcards.study, wildcards.experiment)
+    own = home(wildcards.study, wildcards.scale, wildcards.experiment)
     return KINDS["problems"].format(
         scale=wildcards.scale, study=own, experiment=wildcards.experiment
     )
@@ -238,7 +227,7 @@ def files_read(job, kind, wildcards):
     for name, methods in job(wildcards).shows.items():
         study, _, experiment = name.rpartition("/")
         study = study or wildcards.study
-        if kind == "traces" and not study_of(study).moves(experiment):
+        if kind == "traces" and not PLACES[study].moves(experiment):
             continue
         place = {"scale": wildcards.scale, "experiment": experiment}
         chunks = [(method, n) for method in methods for n in range(methods[method])]
@@ -246,7 +235,7 @@ def files_read(job, kind, wildcards):
         of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
         found += [
             KINDS[kind].format(
-                **place, study=home(study=study, method=method, **place), method=method, chunk=n
+                **place, study=home(study, method=method, **place), method=method, chunk=n
             )
             for method, n in of_runs
         ]
@@ -301,7 +290,7 @@ def of_readings(file):
     """A file of each joint reading of a study, at the scale at which claims are judged so."""
     return lambda wildcards: [
         f"results/{wildcards.scale}/{place}/{file}"
-        for place in under(wildcards.study, "readings")
+        for place in under(wildcards.study, stored.READINGS)
         if wildcards.scale == jobs.JUDGED_AT
     ]
 
@@ -309,8 +298,19 @@ def of_readings(file):
 def of_alternatives(wildcards):
     """The comparisons of claims by default and under each alternative, if a figure draws them."""
     drawn = STUDIES[wildcards.study].figures[wildcards.figure].claims
-    places = under(wildcards.study, "alternatives") if drawn else ()
+    places = under(wildcards.study, stored.ALTERNATIVES) if drawn else ()
     return [f"results/{wildcards.scale}/{place}/claim_checks.csv" for place in places]
+
+
+def below(scale):
+    """Places of studies under other values on whose claims the page rests."""
+    found = []
+    for key, study in OF_SCALE[scale].items():
+        figures = study.figures.keys() & {*page.shown_of(study, scale, ROOT)}
+        drawn = any(study.figures[name].claims for name in figures)
+        found += under(key, stored.READINGS) if scale == jobs.JUDGED_AT else []
+        found += under(key, stored.ALTERNATIVES) if drawn else []
+    return found
 
 
 def shown(wildcards):
@@ -319,7 +319,7 @@ def shown(wildcards):
     artefacts = [
         file
         for study in OF_SCALE[scale].values()
-        for name in page.shown_of(study, scale, PREFIX)
+        for name in page.shown_of(study, scale, ROOT)
         for file in files_of(scale, study, name)
     ]
     return [
@@ -337,7 +337,34 @@ def judged(wildcards):
     """Files of the results that the page shows, and of those that the summary compares with the
     baseline.
     """
-    makes = [of(page.verified, root=PREFIX)]
+    makes = [of(page.page, root=ROOT)]
     makes += [of(jobs.baseline_comparison)] if summed(wildcards.scale) else []
     parts = [results(job)(wildcards) for job in makes]
+    for place in below(wildcards.scale):
+        names = SimpleNamespace(scale=wildcards.scale, study=place)
+        parts.append(results(lambda names: build(jobs.claims, vars(names)))(names))
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}
+
+
+def listed(wildcards):
+    """All files behind the page, by kind."""
+    return {
+        **judged(wildcards),
+        "shown": shown(wildcards),
+        "summary": summed(wildcards.scale),
+        "below": [
+            f"results/{wildcards.scale}/{place}/{name}.csv"
+            for place in below(wildcards.scale)
+            for name in ("claims", "claim_checks")
+        ],
+    }
+
+
+def verified(wildcards):
+    """The job that lists them."""
+    folder = f"results/{wildcards.scale}/"
+    files = {file.removeprefix(folder) for kind in listed(wildcards).values() for file in kind}
+    places = {
+        place: study for place, study in PLACES.items() if study.key in OF_SCALE[wildcards.scale]
+    }
+    return stored.verified(places, wildcards.scale, ROOT, files)

@@ -94,9 +94,7 @@ rule verdict:
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
-        unpack(judged),
-        shown=shown,
-        summary=lambda wildcards: summed(wildcards.scale),
+        unpack(listed),
     output:
         # It says which studies the page shows, so it stays if its job is killed.
         update("results/{scale}/verified.json"),
@@ -105,14 +103,14 @@ rule verified:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.verified, root=PREFIX),
+        **params_of(verified),
     script:
         "../scripts/job.py"
 
 
 rule page:
     input:
-        unpack(results(of(page.page, root=PREFIX))),
+        unpack(results(of(page.page, root=ROOT))),
         shown=shown,
         summary=lambda wildcards: summed(wildcards.scale),
         # Last, for it is of all these files.
@@ -125,6 +123,6 @@ rule page:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.page, root=PREFIX),
+        **params(page.page, root=ROOT),
     script:
         "../scripts/job.py"

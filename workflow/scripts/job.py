@@ -3,4 +3,4 @@
 from bezierplan.running.jobs import log
 
 with log.job(snakemake) as output:
-    snakemake.params.job.run(snakemake.input, output)
+    snakemake.params.job.work(snakemake.input, output)

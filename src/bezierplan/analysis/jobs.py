@@ -1,13 +1,12 @@
 """The jobs of the workflow but those that draw, each declared once: a class whose fields are all
-values that a job depends on, and whose `run` is the function that works. From that function, and
-from the modules that the values name, follows the digest of code (`Job.digest`) by which Snakemake
-sees that a job must run again. Files of results stand in the rules alone.
+values that a job depends on, and whose `run` is the function that works. From both follows the
+account of a job (`Job.account`), by which Snakemake sees that it must run again, and `verify` that
+its files are what it makes.
 
 `run` imports what it needs itself: the workflow makes jobs at every start, and imports none of it.
 """
 
 import hashlib
-import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
@@ -17,7 +16,9 @@ from typing import Any
 
 from bezierplan.analysis.claims.material import Material, StudyForClaims
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
-from bezierplan.machine.digest import content_digest, function_digest, module_of
+from bezierplan.machine import opened
+from bezierplan.machine.digest import code_account, content_digest, module_of, sources
+from bezierplan.machine.modules import is_file
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.inputs import Shows
@@ -54,25 +55,43 @@ class Job(ABC):
         """Modules that `run` imports by name, because of the values."""
         return self.code
 
+    def work(self, input_files: Any, output_files: Any) -> None:
+        """Run, and keep which files the code of a study opens meanwhile."""
+        files = [name for name in self.modules() if is_file(name)]
+        if files:
+            opened.watch()
+        self.run(input_files, output_files)
+        if files:
+            opened.keep(self.key, [*sources(*files), *self.sources])
+
     @cached_property
-    def digest(self) -> str:
-        """Of the values, the content of sources, and the code that works, with the versions of
-        libraries that compute. Objects that have the same text are the same.
+    def account(self) -> dict[str, str]:
+        """What the job's files follow from, by name: digests of its values (settings), of the code
+        that works and of its sources, and the versions of libraries that compute. Objects that have
+        the same text are the same; where files lie does not count.
         """
-        names = [each.name for each in fields(self) if each.name != "sources"]
+        names = [each.name for each in fields(self) if each.name not in ("sources", "folder")]
         text = repr([(name, getattr(self, name)) for name in names])
-        works = tuple(
-            function
-            for name, function in inspect.getmembers(type(self), inspect.isfunction)
-            if not name.startswith("__") and name != "modules"
+        works = type(self).run, type(self).write
+        return (
+            {"settings": hashlib.sha256(text.encode()).hexdigest()[:16]}
+            | code_account(works, *sorted(set(self.modules())))
+            | {"sources": content_digest(*self.sources)}
         )
-        return " ".join(
-            [
-                hashlib.sha256(text.encode()).hexdigest()[:16],
-                content_digest(*self.sources),
-                function_digest(works, *sorted(set(self.modules()))),
-            ]
-        )
+
+    @cached_property
+    def key(self) -> str:
+        """The digest of the account."""
+        return hashlib.sha256(repr(self.account).encode()).hexdigest()[:16]
+
+    @property
+    def grounds(self) -> dict[str, str]:
+        """The account by which a job runs again: with those files that have changed since the code
+        of a study first opened them. Before its first run nobody knows them.
+        """
+        first = opened.kept(self.key)
+        now = opened.contents(first)
+        return self.account | {name: now[name] for name in now if now[name] != first[name]}
 
 
 @dataclass(frozen=True)
@@ -126,7 +145,7 @@ class Runs(Job):
 
         built, moving = problems.read(input_files.problems)
         tables = execution.run_chunk(built, self.chunk, moving)
-        rows.write(tables[0], output_files.runs, self.digest)
+        rows.write(tables[0], output_files.runs)
         parquet.write_table(tables[1], output_files.times)
         for traces in tables[2:]:
             parquet.write_table(traces, output_files.traces, compression="zstd")
@@ -145,7 +164,7 @@ class Recheck(Job):
         from bezierplan.running import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
-        verdict = recheck.judged(recheck.StoredRuns(input_files.problems[0], files, {}))
+        verdict = recheck.judged(recheck.StoredRuns(input_files.problems[0], files))
         recheck.write(recheck.sound(verdict), output_files[0])
 
 
@@ -362,17 +381,22 @@ class VerdictText(Job):
 
 @dataclass(frozen=True)
 class Verification(Job):
-    """What was judged again of all that the page shows, and the digest of every file."""
+    """What was judged again of all that the page shows, and the digest of every file, with the
+    account of the job that makes it.
+    """
 
     folder: str
     """That of the scale."""
     studies: dict[str, str]
     """Those of the page, by name, each with the word that names it in a configuration."""
+    accounts: list[tuple[list[str], str, dict[str, str]]]
+    """Files below it, with the key and the account of the job that makes them."""
 
     def run(self, input_files, output_files):
         """List the files."""
         import json
 
+        from bezierplan.analysis.outcome import proof
         from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
@@ -381,8 +405,16 @@ class Verification(Job):
         )
         content = recheck.sound(verdict) | {
             "digest": verdict.digest,
+            "made_by": proof.made_by(),
             "versions": recheck.versions(),
             "studies": self.studies,
+            "accounts": [
+                (["verified.json"], self.account),
+                *(
+                    (files, account | opened.contents(opened.kept(key)))
+                    for files, key, account in self.accounts
+                ),
+            ],
             "sha256": {
                 str(file.relative_to(self.folder)): recheck.sha256(file)
                 for file in sorted({*map(Path, input_files)})

@@ -12,7 +12,7 @@ from bezierplan.running import answer
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running.chunk import Chunk, chunk_files
-from bezierplan.running.columns import TABLES
+from bezierplan.running.columns import ANSWER, TABLES
 from bezierplan.running.inputs import Files, by_table
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
@@ -23,7 +23,7 @@ class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
     runs: one row per run, columns as in `running.columns`, with the bounds of its problem; one that
-    drew no random numbers stands for every repeat.
+    drew no random numbers, and is equal to all others, stands for every repeat.
     problems: by name. bounds: one row per problem, indexed by name, columns as in
     `problems.bounds_of`. published: the study's published numbers, if requested. jobs: method ->
     the first chunk of its runs, if runs are reproduced. worlds: by problem, where a world
@@ -104,7 +104,7 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
     if fault := row_files.fault(table.schema, *declared.every, *drives):
         raise row_files.misplaced(file, fault)
-    if kind != "times" and row_files.kept_digests(table)[0] != row_files.rows_digest(table):
+    if kind != "times" and row_files.kept_digest(table) != row_files.rows_digest(table):
         raise row_files.misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 
@@ -130,11 +130,16 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
 
 
 def _in_every_repeat(runs: pd.DataFrame) -> pd.DataFrame:
-    """Runs, of which those that drew no random numbers stand once for each repeat that there is
-    under their condition, with their own id.
+    """Runs, of which those that drew no random numbers, and whose answers are all equal, stand once
+    for each repeat that there is under their condition, with their own id.
     """
     if runs["drew"].all():
         return runs
+    still = runs[~runs["drew"]]
+    answers = still[ANSWER].map(tuple).apply(tuple, axis=1)
+    differ = answers.groupby([still["condition"], still["method"]]).transform("nunique") > 1
+    # A copy of the generator has its numbers too.
+    runs.loc[differ.index[differ], "drew"] = True
     repeats = runs[["condition", "repeat"]].drop_duplicates()
     runs = runs.assign(place=np.arange(len(runs)))
     once = runs[~runs["drew"]].drop_duplicates(["condition", "method"]).drop(columns="repeat")

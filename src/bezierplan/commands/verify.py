@@ -1,15 +1,21 @@
 """Check all results of a scale again, from runs to page."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn
 
+from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
-from bezierplan.commands import config_of, cores, studies_of, study_named
+from bezierplan.commands import config_of, cores, study_named
+from bezierplan.machine import opened
+from bezierplan.places import relative
 from bezierplan.running import recheck
-from bezierplan.study import stored
+from bezierplan.study import reading, stored
+from bezierplan.study.jobs import Studies
+
+# Jobs whose files do not follow from others, or take minutes.
+_KEPT = (Runs, Recheck, Verification)
 
 
 def main(
@@ -19,12 +25,12 @@ def main(
     cores: int = cores(),
     all_: bool = False,
 ) -> None:
-    """Print a line for each stored value or file that differs from what is made again, and what was
-    checked: runs are judged again; the first run of each file and one in a hundred, bounds and all
-    files that follow from runs are made again, by the code that made the runs.
+    """Print a line for each file that differs from what is made again, what was checked, and the
+    answer: `made by this code`, `made by other code or libraries`, or `differs`.
 
-    Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder
-    without results or a file that cannot be read.
+    Runs are judged again; the first run of each file and one in a hundred, bounds and all files
+    that follow from runs are made again. Ends with status 1 if anything differs, or nothing makes a
+    file. Raises ValueError or FileNotFoundError for a folder without results.
 
     Parameters
     ----------
@@ -44,45 +50,71 @@ def main(
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
-    config = config_of()
-    places = stored.places_of(folder, config, map(study_named, studies))
-    loaded = studies_of([*places.values()]) if places else {}
-    tasks, left = stored.tasks(loaded, folder), stored.of_nothing(loaded, folder)
-    faults = proof.unlisted(folder)
-    missing = [fault for fault in faults if not Path(fault.file).is_file()]
-    if missing:
-        _fail(*missing, f"{len(missing)} files are missing")
-    try:
-        verdict = recheck.verify(tasks, cores, progress)
-    except ValueError as fault:
-        # What cannot be read may have been told already.
-        if not faults:
-            raise
-        _fail(*faults, fault)
-    faults += verdict.faults
-    lines = [f"{file}: of no table, figure or runs; delete it" for file in left]
-    lines += [
-        f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
-        "again"
+    places = stored.places_of(folder, config_of(), map(study_named, studies))
+    config = proof.narrowed(config_of(), [*places.values()])
+    at = stored.places(reading.load(reading.read_config(config)))
+    listed = proof.listed(folder)
+    made = stored.jobs_of(at, folder, listed.digests)
+    changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
+    tasks = _tasks(at, made, changes, folder)
+    verdict = recheck.verify(tasks, cores, progress)
+    faults = [*proof.unlisted(folder, listed), *verdict.faults]
+    again = recheck.made_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
+    progress(f"{again.runs} runs made again")
+    follow = {name: not isinstance(made[name], _KEPT) for name in made}
+    files, others = proof.differing(folder, follow, config, listed.digests, cores)
+    wrong: dict[str, recheck.Difference] = {}
+    for fault in (*faults, *again.faults, *others):
+        wrong.setdefault(fault.file, fault)
+    left, versions = stored.strangers(folder, made), recheck.versions()
+    # The list holds all accounts, so that each change is one of its own.
+    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
+    names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
+    moved = [
+        f"{name} {before} -> {versions.get(name)}"
+        for name, before in listed.versions.items()
+        if names and versions.get(name) != before
     ]
-    if not faults:
-        again = recheck.made_again(tasks, cores, verdict.digest, all_)
-        faults = again.faults
-        progress(f"{again.runs} runs made again, {len(faults)} faults")
-        lines.append(f"{again.runs} runs made again")
-    if not faults:
-        files, faults = proof.differing(folder, left, config, places, cores)
-        lines.append(f"{files} files made again")
-    versions = (f"{name} {version}" for name, version in recheck.versions().items())
-    lines.append(f"digest {verdict.digest}; {', '.join(versions)}")
-    but = f" but for {len(left)} files that nothing makes" if left else ""
-    lines.append(f"{len(faults)} values differ" if faults else f"sound{but}")
-    if faults or left:
-        _fail(*faults, *lines)
-    print(*lines, sep="\n")
+    words = ", ".join([*sorted(names - versions.keys()), *moved])
+    answer = f"made by other code or libraries ({words})" if words else "made by this code"
+    print(
+        *wrong.values(),
+        *(f"{file}: nothing makes it; delete it" for file in left),
+        f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
+        f"again; digest {verdict.digest}",
+        f"verified with {', '.join(map(' '.join, versions.items()))}",
+        f"differs: {len(wrong)} files; {answer}"
+        if wrong
+        else f"{answer}: {again.runs} runs and {files} files made again, all equal",
+        sep="\n",
+    )
+    if wrong or left:
+        sys.exit(1)
 
 
-def _fail(*lines: Any) -> NoReturn:
-    """End with status 1: something differs."""
-    print(*lines, sep="\n")
-    sys.exit(1)
+def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
+    """Return what of the account of a listed file is not that of its job."""
+    now = job.account | opened.contents(account) if job else {}
+    return {name for name in account.keys() | now if account.get(name) != now.get(name)}
+
+
+def _tasks(
+    at: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
+) -> list[recheck.StoredRuns]:
+    """Return the runs of each method in an experiment of which there are some. at: the study at
+    each place of results.
+    """
+    found: dict[Path, recheck.StoredRuns] = {}
+    for name, job in made.items():
+        file = folder / name
+        if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
+            place, experiment = name.partition("/runs/")[0], job.chunk.experiment
+            home = stored.home(at, place, folder.resolve().name, experiment)
+            changed = relative(at[place].folder / "experiments.yaml")
+            task = recheck.StoredRuns(
+                str(folder / home / "problems" / f"{experiment}.parquet"),
+                {},
+                changed if "settings" in changes.get(name, ()) else "",
+            )
+            found.setdefault(file.parent, task).runs[str(file)] = job.chunk
+    return [*found.values()]

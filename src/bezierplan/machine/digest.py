@@ -12,12 +12,11 @@ import importlib.metadata
 import inspect
 import json
 import os
-import sys
 import textwrap
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from bezierplan.places import PACKAGE, cache_folder
 
@@ -31,12 +30,19 @@ NEUTRAL = {
         "places",
         "machine.digest",
         "machine.kernel_cache",
+        "machine.opened",
         "running.jobs.log",
     )
 }
 
-COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarrow")
-"""Libraries whose versions can change a number."""
+COMPUTING = {
+    **{name: [name] for name in ("numpy", "scipy", "shapely", "pandas", "pyarrow", "jinja2")},
+    "numba": ["numba", "llvmlite"],
+    "matplotlib": ["matplotlib", "pillow"],
+    "PIL": ["pillow"],
+    "seaborn": ["seaborn"],
+}
+"""Modules of libraries whose versions can change what a job writes -> names of these libraries."""
 
 
 class _Module(NamedTuple):
@@ -78,38 +84,50 @@ def module_of(planner: str) -> str:
 
 
 class _Syntax(NamedTuple):
-    """What a file computes, as text: its syntax tree without docstrings; and what it imports:
-    (leading dots, module, name in it).
+    """What a file computes: the digest of its syntax tree without docstrings; what it imports:
+    (leading dots, module, name in it); and its docstring.
     """
 
     tree: str
     imports: list[list[int | str]]
+    about: str
 
 
 @cache
 def _syntax(file: Path) -> _Syntax:
-    """The syntax of a file, kept from earlier processes: parsing takes as long as importing."""
+    """Return the syntax of a file, kept from earlier processes: parsing takes as long as
+    importing.
+    """
     source = file.read_bytes()
-    kept = (
-        cache_folder()
-        / "syntax"
-        / f"{hashlib.sha256(source).hexdigest()}.{sys.implementation.cache_tag}.json"
-    )
+    # What was kept by other code than this module's is not read.
+    name = hashlib.sha256(source + Path(__file__).read_bytes()).hexdigest()
+    kept = cache_folder() / "syntax" / f"{name}.json"
     try:
         return _Syntax(*json.loads(kept.read_bytes()))
     except (OSError, ValueError, TypeError):
         parsed = _parsed(source)
     # Nothing depends on whether it can be kept.
     with contextlib.suppress(OSError):
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        part = kept.with_suffix(f".{os.getpid()}")
-        part.write_text(json.dumps(parsed))
-        part.replace(kept)
+        keep_json(parsed, kept)
     return parsed
+
+
+def keep_json(content: Any, file: Path) -> None:
+    """Write plain values to a file, which is whole whenever it is read."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_suffix(f".{os.getpid()}")
+    part.write_text(json.dumps(content))
+    part.replace(file)
+
+
+def docstring(module: str) -> str:
+    """Return the docstring of a module, which is read and not imported."""
+    return _syntax(_module(module).file()).about
 
 
 def _parsed(source: bytes) -> _Syntax:
     tree = ast.parse(source)
+    about = ast.get_docstring(tree) or ""
     imports = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -119,6 +137,7 @@ def _parsed(source: bytes) -> _Syntax:
         elif (
             isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
             and ast.get_docstring(node) is not None
+            and b"__doc__" not in source
         ):
             node.body = node.body[1:]
         elif (
@@ -128,7 +147,21 @@ def _parsed(source: bytes) -> _Syntax:
         ):
             # The words about a planner's setting; what remains is its unit.
             node.args = node.args[2:]
-    return _Syntax(ast.dump(tree), sorted(map(list, imports)))
+    return _Syntax(_digest(repr(_nested(tree))), sorted(map(list, imports)), about)
+
+
+def _nested(part: Any) -> tuple | str:
+    """Return a syntax tree as nested tuples, without fields that are empty: newer Pythons have
+    more of these.
+    """
+    if isinstance(part, ast.AST):
+        fields = ((name, _nested(value)) for name, value in ast.iter_fields(part))
+        return (type(part).__name__, *(each for each in fields if each[1] not in ("None", ())))
+    return tuple(map(_nested, part)) if isinstance(part, list) else repr(part)
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
@@ -162,38 +195,21 @@ def source_digest(*modules: str) -> str:
     return _reached(*modules).digest
 
 
-def covers(module: str, file: Path) -> bool:
-    """Whether `source_digest` of a module depends on a file, or on the source of which this is byte
-    code or a compiled kernel.
-    """
-    cached = file.parent.name == "__pycache__"
-    return any(
-        file.parent.parent == source.parent and file.name.startswith(f"{source.stem}.")
-        if cached
-        else file in (source, source.with_suffix(".csv"))
-        for source in _reached(module).files
-    )
-
-
-def versioned_digest(*modules: str) -> str:
-    """`source_digest`, with the versions of the libraries among `COMPUTING` that these modules
-    import: what a job's results depend on.
-    """
-    digest, libraries, _ = _reached(*modules)
-    return " ".join(
-        [digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)]
-    )
+def sources(*modules: str) -> list[Path]:
+    """Return the files of code on which `source_digest` of modules depends."""
+    return _reached(*modules).files
 
 
 @cache
-def function_digest(functions: tuple[Callable, ...], *modules: str) -> str:
-    """Digest of some functions, of all that they import from this package, and of further modules,
-    with the versions of the libraries among `COMPUTING` that these import.
+def code_account(functions: tuple[Callable, ...], *modules: str) -> dict[str, str]:
+    """Return the digest of some functions, of all that they import from this package, and of
+    further modules, and by name the versions of the libraries among `COMPUTING` that these import:
+    what a job's results depend on.
     """
     trees = []
     named = set(modules)
     for function in functions:
-        tree, imports = _parsed(textwrap.dedent(inspect.getsource(function)).encode())
+        tree, imports, _ = _parsed(textwrap.dedent(inspect.getsource(function)).encode())
         trees.append(tree)
         named.update(
             name
@@ -201,8 +217,9 @@ def function_digest(functions: tuple[Callable, ...], *modules: str) -> str:
             for name in (base, f"{base}.{part}")
             if name.split(".")[0] == ROOT and _module(name).file()
         )
-    functions_digest = hashlib.sha256("\n".join(trees).encode()).hexdigest()[:16]
-    return f"{functions_digest} {versioned_digest(*sorted(named))}"
+    reached = _reached(*sorted(named))
+    versions = {name: library_version(name) for name in sorted(reached.libraries)}
+    return {"code": _digest(" ".join([*trees, reached.digest]))} | versions
 
 
 @cache
@@ -213,7 +230,7 @@ def library_version(name: str) -> str:
 
 class _Reach(NamedTuple):
     """What modules depend on: the digest of `source_digest`; the libraries among `COMPUTING` that
-    are imported anywhere (llvmlite comes with numba); and files of source.
+    are imported anywhere; and files of source.
     """
 
     digest: str
@@ -236,20 +253,19 @@ def _reached(*modules: str) -> _Reach:
             data = beside.read_text(encoding="utf-8") if beside.is_file() else ""
             texts[module] = f"{module.name} {_syntax(module.file()).tree}{data}"
             todo += _imports(module)
-            libraries.update(
-                base.split(".")[0]
-                for level, base, _ in _syntax(module.file()).imports
-                if not level and base
-            )
-    libraries |= {"llvmlite"} if "numba" in libraries else set()
-    digest = hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
+            for level, base, _ in _syntax(module.file()).imports:
+                libraries.update(COMPUTING.get(base.split(".")[0], ()) if not level else ())
+    digest = _digest("\n".join(sorted(texts.values())))
     return _Reach(digest, libraries, [module.file() for module in texts])
 
 
 @cache
 def content_digest(*files: str) -> str:
-    """Digest of the content of files, in this order: unlike a timestamp, it shows a change."""
-    contents = (Path(file).read_bytes() for file in files)
+    """Return the digest of the content of files, in this order: unlike a timestamp, it shows a
+    change. A file that is not there has another one than an empty file.
+    """
+    places = map(Path, files)
+    contents = (file.read_bytes() if file.is_file() else b"no file" for file in places)
     return hashlib.sha256(
         b"".join(hashlib.sha256(content).digest() for content in contents)
     ).hexdigest()[:16]

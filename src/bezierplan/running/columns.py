@@ -100,6 +100,9 @@ RESULTS = _types(Outcome)
 DRIVE_RESULTS = _types(DriveOutcome)
 """Columns of a runs table that only drives have."""
 
+ANSWER = ["path_points", "history"]
+"""Columns of a run by which its answer equals that of another one: lists of numbers."""
+
 JOINED = {name: kind for name, kind in _types(Bound, Times).items() if name not in PLANNED}
 """Columns joined to a runs table when it is read: those of `problems.bounds_of`, and the times."""
 

@@ -11,8 +11,9 @@ import hashlib
 import json
 import math
 import multiprocessing
+import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path as File
@@ -26,7 +27,7 @@ from bezierplan.machine.digest import COMPUTING, library_version
 from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
-from bezierplan.running.jobs.watchdog import end_with_parent
+from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
@@ -41,33 +42,33 @@ MADE_AGAIN = 100
 
 
 class Difference(NamedTuple):
-    """A stored value that is not what follows from runs and studies. run: its id, a problem's name,
-    or `all rows`.
-    """
+    """A file that is not what follows from runs and studies, and what of it."""
 
     file: str
-    run: str
-    column: str
-    old: Any
-    new: Any
+    what: str
 
     def __str__(self) -> str:
-        return plain(
-            " ".join(
-                f"{self.file}: {self.run}: {self.column}: stored {self.old}, recomputed "
-                f"{self.new}".split()
-            )
-        )
+        return plain(" ".join(f"{self.file}: {self.what}".split()))
+
+
+def _differs(file: str, run: str, column: str, old: Any, new: Any) -> Difference:
+    """Return the difference between a stored value of a run and the one that is computed again."""
+    return Difference(file, f"{run}: {column}: stored {old}, recomputed {new}")
+
+
+def told(file: str, error: Exception) -> Difference:
+    """Return what an exception says of a file."""
+    return Difference(file, str(error).removeprefix(f"{file}: "))
 
 
 class StoredRuns(NamedTuple):
-    """Files of runs of an experiment, each with the chunk that it is to hold, and with today's
-    digest of the job that makes it, where that is to be judged.
+    """Files of runs of an experiment, each with the chunk that it is to hold. changed: the file
+    that defines the experiment, if it defines another one than when the runs were made.
     """
 
     problems: str
     runs: dict[str, Chunk]
-    jobs: dict[str, str]
+    changed: str = ""
 
 
 class RunsVerdict(NamedTuple):
@@ -88,7 +89,9 @@ class RunsVerdict(NamedTuple):
 
 
 def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) -> RunsVerdict:
-    """The verdict on tasks, in several processes. say: gets a line of progress now and then."""
+    """Return the verdict on tasks, in several processes. say: gets a line of progress now and
+    then.
+    """
     done = []
     for each in _mapped(judged, tasks, processes):
         done.append(each)
@@ -136,8 +139,9 @@ def sha256(file: File) -> str:
 
 
 def versions() -> dict[str, str]:
-    """The libraries that compute, with their versions."""
-    return {name: library_version(name) for name in COMPUTING}
+    """Return the versions of Python and of the libraries that compute."""
+    names = sorted({name for names in COMPUTING.values() for name in names})
+    return {"python": platform.python_version()} | {name: library_version(name) for name in names}
 
 
 def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
@@ -148,35 +152,46 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 
 def judged(task: StoredRuns) -> RunsVerdict:
-    """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
-    by_name, moving = _problems(task.problems)
+    """Return the verdict on a task."""
+    try:
+        by_name, moving = _problems(task.problems)
+    except ValueError as error:
+        return RunsVerdict((told(task.problems, error),), len(task.runs))
     faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
-        if not chunk.problems.keys() <= by_name.keys():
-            raise rows.misplaced(task.problems, "not of the problems that the runs are of")
-        table = rows.read(file)
+        try:
+            table = rows.read(file)
+        except ValueError as error:
+            faults.append(told(file, error))
+            continue
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-        (kept, job), digest = rows.kept_digests(table), rows.rows_digest(table)
+        kept, digest = rows.kept_digest(table), rows.rows_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         if kept != digest:
-            stored = kept or "none: another program wrote it"
-            of_file = [Difference(file, "all rows", "digest", stored, digest)]
+            faults.append(Difference(file, "other rows than were written"))
         elif fault := rows.fault(table.schema, *declared):
-            raise rows.misplaced(file, fault)
+            faults.append(told(file, rows.misplaced(file, fault)))
         else:
-            entries = table.to_pylist()
-            of_file = [*_identity_faults(file, entries, chunk)]
-            if not of_file and (today := task.jobs.get(file, job)) != job:
-                of_file = [Difference(file, "all rows", "code and libraries", job or "none", today)]
-            if not of_file:
-                files[file] = entries
-        faults += of_file
+            files[file] = table.to_pylist()
+            of_file = [*_identity_faults(file, files[file], chunk)]
+            if of_file and task.changed:
+                what = f"experiment {chunk.experiment} is another one than that of these runs"
+                of_file = [Difference(task.changed, f"{what}: {File(file).parents[1]}")]
+            elif not of_file and not {row["problem"] for row in files[file]} <= by_name.keys():
+                of_file = [Difference(task.problems, "not of the problems that the runs are of")]
+            if of_file:
+                del files[file]
+            faults += of_file
     known: dict[tuple, dict[str, tuple[Any, float]]] = {}
     for file, stored in files.items():
         for row in stored:
             faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
     return RunsVerdict(
-        tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
+        tuple(dict.fromkeys(faults)),
+        len(task.runs),
+        sum(map(len, files.values())),
+        len(known),
+        tuple(lines),
     )
 
 
@@ -191,13 +206,13 @@ def _identity_faults(
     """Whether a file has the rows that it is to have, and what is known before their runs."""
     planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
     if len(entries) != len(planned):
-        yield Difference(file, "all rows", "id", f"{len(entries)} rows", f"{len(planned)} rows")
+        yield Difference(file, f"{len(entries)} rows; expected {len(planned)}")
         return
     for row, known in zip(entries, planned):
         for name, value in known.items():
             # What a run finds out takes the place of a setting of that name.
             if name not in Outcome._fields and row.get(name) != value:
-                yield Difference(file, known["id"], name, row.get(name), value)
+                yield _differs(file, known["id"], name, row.get(name), value)
 
 
 def _row_faults(
@@ -219,10 +234,10 @@ def _row_faults(
             again = cache[key] | {"generations": (len(row["history"]) - 1, 0.0)}
     except (ValueError, IndexError) as error:
         again = {}
-        yield Difference(file, row["id"], "path_points", "a path", error)
+        yield _differs(file, row["id"], "path_points", "a path", error)
     for name, (value, tolerance) in again.items():
         if row[name] is None or not same(row[name], value, tolerance):
-            yield Difference(file, row["id"], name, row[name], value)
+            yield _differs(file, row["id"], name, row[name], value)
 
 
 def same(value: float, again: float, tolerance: float) -> bool:
@@ -276,12 +291,20 @@ def _drive_judged(
 # Runs made again
 
 
-def made_again(tasks: list[StoredRuns], processes: int, digest: str, every: bool) -> RunsVerdict:
-    """How many runs were made again, and what of them differs from their rows in any bit: the
-    first of each file and one in `MADE_AGAIN`, which a digest chooses, or all.
+def made_again(
+    tasks: list[StoredRuns], wrong: Collection[str], processes: int, digest: str, every: bool
+) -> RunsVerdict:
+    """Return how many runs were made again, and what of them differs from their rows in any bit:
+    the first of each file and one in `MADE_AGAIN`, which a digest chooses, or all. wrong: files
+    with faults, of which nothing is made again.
     """
     again = partial(_again, digest=digest, share=1 if every else MADE_AGAIN)
-    files = [(task.problems, *each) for task in tasks for each in task.runs.items()]
+    files = [
+        (task.problems, file, chunk)
+        for task in tasks
+        for file, chunk in task.runs.items()
+        if not {task.problems, task.changed, file} & {*wrong}
+    ]
     return merged(_mapped(again, files, processes))
 
 
@@ -298,11 +321,14 @@ def _again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
         == 0
     ]
     made, moving = _problems(problem_file)
-    remade = execution.rows_again(chunk, [runs[n] for n in numbers], made, moving)
+    try:
+        remade = execution.rows_again(chunk, [runs[n] for n in numbers], made, moving)
+    except (PlannerFailure, ValueError) as error:
+        return RunsVerdict((Difference(file, f"cannot be made again: {error}"),))
     faults = []
     for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
         for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
             if repr(value) != repr(stored.get(name)):
-                faults.append(Difference(file, row["id"], name, stored.get(name), value))
+                faults.append(_differs(file, row["id"], name, stored.get(name), value))
     return RunsVerdict(tuple(faults), runs=len(numbers))

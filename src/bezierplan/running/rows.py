@@ -12,7 +12,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.running import columns
 
-_DIGEST, _JOB = b"bezierplan_rows", b"bezierplan_job"
+_DIGEST = b"bezierplan_rows"
 
 _TYPES = {
     columns.RunName: pa.string(),
@@ -55,12 +55,10 @@ def fault(schema: pa.Schema, *declared: type) -> str:
     return ""
 
 
-def write(table: pa.Table, file: str, job: str = "") -> None:
-    """Write a table with the digest of its rows, and that of the job that made it."""
-    digests = {_DIGEST: rows_digest(table), _JOB: job}
-    parquet.write_table(
-        table.replace_schema_metadata((table.schema.metadata or {}) | digests), file
-    )
+def write(table: pa.Table, file: str) -> None:
+    """Write a table with the digest of its rows."""
+    digest = {_DIGEST: rows_digest(table)}
+    parquet.write_table(table.replace_schema_metadata((table.schema.metadata or {}) | digest), file)
 
 
 def read(file: str, threads: bool = True) -> pa.Table:
@@ -82,12 +80,9 @@ def misplaced(file: str, what: str) -> ValueError:
     return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
-def kept_digests(table: pa.Table) -> tuple[str, str]:
-    """The digests with which a table was written, of its rows and of its job; empty for a file
-    without one.
-    """
-    kept = table.schema.metadata or {}
-    return kept.get(_DIGEST, b"").decode(), kept.get(_JOB, b"").decode()
+def kept_digest(table: pa.Table) -> str:
+    """Return the digest of its rows with which a table was written; empty without one."""
+    return (table.schema.metadata or {}).get(_DIGEST, b"").decode()
 
 
 def rows_digest(table: pa.Table) -> str:

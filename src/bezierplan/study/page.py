@@ -1,10 +1,8 @@
-"""The jobs that show all results of a scale: the page, and the check of what it shows."""
+"""The job that shows all results of a scale: the page."""
 
 import hashlib
-import os
 from pathlib import Path
 
-from bezierplan.analysis.jobs import Verification
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
@@ -14,25 +12,26 @@ from bezierplan.figures.page.page_job import (
     PageJob,
     StudyView,
 )
-from bezierplan.machine.digest import content_digest
-from bezierplan.places import STUDIES, relative
+from bezierplan.machine.digest import content_digest, docstring, module_of
+from bezierplan.places import STUDIES
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
 
+RESULTS = "results/"
 _LONG = 80
 """Characters of a value that stand where settings are compared."""
 
 
-def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
+def shown_of(study: Study, scale: str, root: str = RESULTS) -> list[str]:
     """Names of the tables and figures of a study that the page shows: those of the paper, and of
     the others what there is; at scale extended all.
 
-    root: what stands before the paths of results, in a workflow of which this one is a module.
+    root: the folder of all scales, with a slash at its end.
     """
-    folder = Path(f"{root}results/{scale}/{study.key}/{BEYOND}")
+    folder = Path(f"{root}{scale}/{study.key}/{BEYOND}")
     return in_printed_order(
         [
             *study.named(PAPER),
@@ -45,7 +44,7 @@ def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
     )
 
 
-def shows(studies: Studies, scale: str, root: str = "") -> Shows:
+def shows(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
     """The results behind all tables, figures and claims that the page shows."""
     behind: Shows = {}
     for key, study in studies.items():
@@ -59,13 +58,7 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     return behind
 
 
-def verified(studies: Studies, scale: str, root: str = "") -> Verification:
-    """What the page shows is judged again."""
-    places = {key: os.path.join(".", relative(study.folder)) for key, study in studies.items()}
-    return Verification(f"{root}results/{scale}", places, shows=shows(studies, scale, root))
-
-
-def page(studies: Studies, scale: str, root: str = "") -> Page:
+def page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     """The page of a scale."""
     behind, outcome = shows(studies, scale, root), any(map(_of_project, studies.values()))
     shown = {key: _study(own, scale, root) for key, own in studies.items()}
@@ -97,7 +90,12 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
         paper=study.paper,
         labels=study.labels,
         methods={
-            name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
+            name: MethodView(
+                study.planner(name),
+                study.resolved(name),
+                docstring(module_of(study.planner(name))),
+            )
+            for name in study.methods
         },
         claims={claim.id: claim for claim in study.claims},
         repeats=_repeats(study, scale),

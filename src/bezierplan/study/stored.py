@@ -1,25 +1,163 @@
-"""What each file of runs is to hold, by the studies."""
+"""The files of a scale, and the job that makes each: one account, by which the workflow runs jobs
+again, and by which `verify` asks whether a file is still what its job makes.
+"""
 
-from collections.abc import Iterable
+import os
+from collections.abc import Collection, Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running.recheck import StoredRuns
+from bezierplan.analysis.jobs import Job, Verification
+from bezierplan.analysis.outcome.proof import LIST, PAGE
+from bezierplan.places import relative
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import jobs, reading
+from bezierplan.study import alternatives, jobs, page, reading
+from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
+Made = tuple[Job, list[str]]
+"""A job and the files that it makes, below the folder of a scale."""
+
+READINGS, ALTERNATIVES = "readings", "alternatives"
+"""Folders in the results of a study, of those of the study under other values."""
+
+
+def places(studies: Studies) -> Studies:
+    """Return studies, also under other values of their assumptions, by the place of results."""
+    found = dict(studies)
+    for key, study in studies.items():
+        for folder, under in (
+            (READINGS, alternatives.joint_readings(study)),
+            (ALTERNATIVES, alternatives.single_alternatives(study)),
+        ):
+            found |= {f"{key}/{folder}/{name}": own for name, own in under.items()}
+    return found
+
+
+def home(places: Studies, place: str, scale: str, experiment: str, method: str = "") -> str:
+    """Return where the problems of an experiment are, or the runs of a method, for the study at a
+    place. What a reading does not change, it shares with the study; what an alternative does not,
+    with the default among the alternatives, which has as few runs.
+    """
+    key, *below = place.split("/")
+    default = f"{key}/{ALTERNATIVES}/{alternatives.DEFAULT}" if ALTERNATIVES in below else key
+    if place == default:
+        return place
+    shared = jobs.is_shared(places[place], places[default], scale, experiment, method)
+    return default if shared else place
+
+
+def made(
+    places: Studies, scale: str, below: Collection[str], root: str = page.RESULTS
+) -> Iterator[Made]:
+    """Yield what the workflow can make at a scale. below: places of studies under other values that
+    count. root: as for `page.shown_of`.
+    """
+    studies = {place: study for place, study in places.items() if place == study.key}
+    for place, study in places.items():
+        if place in studies:
+            parts = chain(_results(places, place, scale, study.experiments), _shown(study, scale))
+        elif place in below:
+            behind = alternatives.experiments_of_claims(study.claims)
+            claims = jobs.claims(study, scale), ["claims.csv", "claim_checks.csv"]
+            parts = chain(_results(places, place, scale, behind), [claims])
+        else:
+            continue
+        yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
+    yield jobs.baseline_comparison(studies, scale), ["baseline_comparison.csv"]
+    yield jobs.worth(studies, scale), ["worth.csv"]
+    yield jobs.summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
+    yield page.page(studies, scale, root), [PAGE]
+
+
+def _results(places: Studies, place: str, scale: str, experiments: Iterable[str]) -> Iterator[Made]:
+    """Yield problems and runs of experiments that are made at a place, with files in its folder."""
+    study = places[place]
+    for name in experiments:
+        if home(places, place, scale, name) == place:
+            yield jobs.problems(study, scale, name), [f"problems/{name}.parquet"]
+            yield jobs.bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
+        for method in study.methods_of(name):
+            if home(places, place, scale, name, method) != place:
+                continue
+            folder = f"runs/{name}/{method}"
+            ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
+            for number in jobs.chunks(study, name, method, scale):
+                files = [f"{folder}/{number}{end}.parquet" for end in ends]
+                yield jobs.runs(study, scale, name, method, str(number)), files
+            yield jobs.judgement(study, scale, name, method), [f"{folder}/judgement.json"]
+
+
+def _shown(study: Study, scale: str) -> Iterator[Made]:
+    """Yield what shows the runs of a study, with files in its folder."""
+    for table in study.tables:
+        csv, tex, *others = study.files_of(table)
+        of_runs = table in study.compared()
+        make = jobs.table_of_runs if of_runs else jobs.table_without_runs
+        yield make(study, scale, table), [csv, *others]
+        yield jobs.latex(study, scale, table), [tex]
+    for figure in study.figures:
+        yield jobs.figure(study, scale, figure), study.files_of(figure)
+    if study.claims:
+        files = ["claims.csv", "claim_checks.csv", "claims_by_reading.csv"]
+        yield jobs.claims(study, scale), files
+    if page.has_audit(study):
+        yield jobs.audit(study, scale), ["audit.csv"]
+    if study.verdict_file():
+        yield jobs.verdict(study, scale), ["verdict.md"]
+
+
+def verified(places: Studies, scale: str, root: str, files: Collection[str]) -> Verification:
+    """Return the job that lists files of a scale, with the account of each, and that of the
+    page.
+    """
+    below = {"/".join(file.split("/")[:3]) for file in files}
+    accounts = [
+        (own, job.key, job.account)
+        for job, own in made(places, scale, below, root)
+        if own == [PAGE] or not {*own}.isdisjoint(files)
+    ]
+    words = {
+        place: os.path.join(".", relative(study.folder))
+        for place, study in places.items()
+        if place == study.key
+    }
+    return Verification(f"{root}{scale}", words, accounts)
+
+
+def jobs_of(places: Studies, folder: Path, listed: Collection[str]) -> dict[str, Job]:
+    """Return the job that makes each file of a scale. listed: the files of its list. What shows
+    several studies shows those of these files.
+    """
+    scale, root = folder.resolve().name, f"{folder}/../"
+    known = {name.split("/")[0] for name in listed}
+    shown = {place: study for place, study in places.items() if study.key in known} or places
+    below = [place for place in places if (folder / place).is_dir()]
+    found = {
+        file: job
+        for studies in (places, shown)
+        for job, files in made(studies, scale, below, root)
+        for file in files
+    }
+    return found | {LIST: verified(shown, scale, root, listed)}
+
 
 def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Where the studies lie whose results a scale's folder holds, by name: as a configuration,
-    further words or the page say, or in the working folder. Raises Fault for one that is in none of
-    these.
+    """Return where the studies lie whose results a scale's folder holds, by name: as a
+    configuration, further words or the page say, or in the working folder. Raises Fault for one
+    that is in none of these, for a folder of no scale, and FileNotFoundError without runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
     known = reading.on_page(folder) | named
     found = {problems.parent.name for problems in folder.glob("*/problems")}
+    if not found:
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
+    check_known(folder.resolve().name, SCALES, f"{folder}: scale")
     for key in sorted(found - known.keys()):
         if not Path(key, "experiments.yaml").is_file():
             raise checked.Fault(
@@ -30,49 +168,13 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
     return {key: word for key, word in known.items() if key in found}
 
 
-def tasks(studies: Studies, folder: Path) -> list[StoredRuns]:
-    """What is to be judged below a scale's folder. Raises Fault for a folder of no scale, and
-    FileNotFoundError without runs.
-    """
-    scale, all_tasks = folder.resolve().name, []
-    for place in sorted(folder.glob("*/runs/*/*")):
-        key, _, experiment, method = place.relative_to(folder).parts
-        check_known(scale, SCALES, f"{folder}: scale")
-        study = studies[key]
-        if experiment in study.experiments and method in study.methods_of(experiment):
-            made = {
-                str(place / f"{number}.parquet"): jobs.runs(
-                    study, scale, experiment, method, str(number)
-                )
-                for number in jobs.chunks(study, experiment, method, scale)
-            }
-            all_tasks.append(
-                StoredRuns(
-                    str(folder / key / "problems" / f"{experiment}.parquet"),
-                    {file: each.chunk for file, each in made.items()},
-                    {file: each.digest for file, each in made.items()},
-                )
-            )
-    if not all_tasks:
-        raise FileNotFoundError(
-            f"{folder}: no runs here; expected a folder of results, such as results/full"
-        )
-    return all_tasks
-
-
-def of_nothing(studies: Studies, folder: Path) -> list[Path]:
-    """Files in the folders of a scale that no study makes."""
-    scale, strangers = folder.resolve().name, []
-    for key, study in studies.items():
-        made = {"claims.csv", "claim_checks.csv", "claims_by_reading.csv", "audit.csv"}
-        made.update(*map(study.files_of, (*study.tables, *study.figures)))
-        for experiment in study.experiments:
-            made |= {f"problems/{experiment}.{end}parquet" for end in ("", "bounds.")}
-            for method in study.methods_of(experiment):
-                numbers = jobs.chunks(study, experiment, method, scale)
-                chunks = [f"{n}.{end}parquet" for n in numbers for end in ("", "times.", "traces.")]
-                made |= {f"runs/{experiment}/{method}/{n}" for n in (*chunks, "judgement.json")}
-        patterns = ("*.csv", "problems/[!.]*", "paper/[!.]*", "beyond/[!.]*", "runs/*/*/[!.]*")
-        files = (file for pattern in patterns for file in sorted((folder / key).glob(pattern)))
-        strangers += [file for file in files if str(file.relative_to(folder / key)) not in made]
-    return strangers
+def strangers(folder: Path, known: Collection[str]) -> list[Path]:
+    """Return the files of a scale, but for logs, that are none of those that its jobs make."""
+    files = (file.relative_to(folder) for file in sorted(folder.rglob("*")) if file.is_file())
+    return [
+        folder / file
+        for file in files
+        if str(file) not in known
+        and file.suffix != ".log"
+        and not any(part == "logs" or part.startswith(".") for part in file.parts)
+    ]

@@ -108,8 +108,9 @@ def _refuse_degrees(shapes: list[Shape]) -> None:
     far, extent = np.maximum(-low, high), max(high - low)
     if (far <= (180, 90)).all() and extent < _AWAY * max(far):
         raise ValueError(
-            f"places about {low[0]:g}, {low[1]:g} with an extent of {extent:.2g} look like degrees; "
-            "expected x and y as lengths: project them, or move a map in metres near the origin"
+            f"places about {low[0]:g}, {low[1]:g} with an extent of {extent:.2g} look like "
+            "degrees; expected x and y as lengths: project them, or move a map in metres near the "
+            "origin"
         )
 
 

@@ -1,32 +1,23 @@
-"""Do all files of a scale follow from its runs? They are made again in a folder of their own."""
+"""Are the files of a scale those that its list names, and do they follow from its runs? They are
+made again in a folder of their own.
+"""
 
 import json
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import bezierplan
 from bezierplan.places import TREE
-from bezierplan.running import rows
 from bezierplan.running.recheck import Difference, sha256
 
-LIST = "verified.json"
-"""The file that lists the digests of all others."""
+LIST, PAGE = "verified.json", "index.html"
+"""The file that lists the digests of all others, and the page that names its own."""
 
-_FOLLOW = (
-    "*/problems/*.parquet",
-    "*/paper/*",
-    "*/beyond/*",
-    "*/*.csv",
-    "*/verdict.md",
-    "*.csv",
-    "index.html",
-)
-"""Files that follow from the studies and from runs."""
-_ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}
-"""Those by which Snakemake is asked for all of them."""
 _RULES = (
     "problems",
     "bounds",
@@ -36,82 +27,125 @@ _RULES = (
     "latex",
     "figure",
     "claims",
+    "claims_of_reading",
     "audit",
     "baseline_comparison",
+    "worth",
     "summary",
     "verdict",
     "page",
 )
 
 
-def _listed(folder: Path) -> dict[str, str]:
-    """The list of digests; empty without one. Raises ValueError for a list that is none."""
-    file = folder / LIST
-    try:
-        return dict(json.loads(file.read_text())["sha256"]) if file.is_file() else {}
-    except (KeyError, TypeError, ValueError):
-        raise rows.misplaced(str(file), "not a list of digests") from None
-
-
-def unlisted(folder: Path) -> list[Difference]:
-    """Files that are not what the list of digests says; none without a list, which only a page
-    needs. Raises ValueError for a list that is none.
+class Listed(NamedTuple):
+    """What the list of a scale says: the digests of files, by name; the account of the job that
+    made each; and versions of libraries. fault: empty, or what is wrong with the list.
     """
-    listed = _listed(folder)
-    if not listed and (folder / "index.html").is_file():
-        return [Difference(str(folder / LIST), "all bytes", "SHA-256", "no file", "a list")]
-    return _changed(folder, listed, folder)
+
+    digests: dict[str, str]
+    accounts: dict[str, dict[str, str]]
+    versions: dict[str, str]
+    fault: str = ""
 
 
-def _changed(folder: Path, digests: dict[str, str], again: Path) -> list[Difference]:
-    """Files of a folder whose digests are not those of the files of the same name in another."""
-    found = {name: sha256(again / name) or "no file" for name in digests}
+def listed(folder: Path) -> Listed:
+    """Return what the list of a scale says; nothing if it is none."""
+    file, page = folder / LIST, folder / PAGE
+    text = page.read_text(encoding="utf-8") if page.is_file() else ""
+    if not file.is_file():
+        return Listed({}, {}, {}, "is not there, though a page is" if text else "")
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        accounts = {name: account for files, account in content["accounts"] for name in files}
+        found = Listed(dict(content["sha256"]), accounts, dict(content["versions"]))
+    except (KeyError, TypeError, ValueError):
+        return Listed({}, {}, {}, "not a list of digests")
+    if text and sha256(file) not in text:
+        return found._replace(fault=f"not the list that {PAGE} names")
+    return found
+
+
+def unlisted(folder: Path, listed: Listed) -> list[Difference]:
+    """Return the files of a scale that are not what its list says; the list, if it is wrong."""
+    if listed.fault:
+        return [Difference(str(folder / LIST), listed.fault)]
+    now = {name: sha256(folder / name) for name in listed.digests}
     return [
-        Difference(str(folder / name), "all bytes", "SHA-256", digests[name], found[name])
-        for name in digests
-        if digests[name] != found[name]
+        Difference(str(folder / name), "was changed since" if now[name] else "is not there")
+        for name, digest in listed.digests.items()
+        if digest != now[name]
     ]
+
+
+def made_by() -> str:
+    """Return the version of this package, and of a clone the commit with its date."""
+    version = f"bezierplan {bezierplan.__version__}"
+    if not (TREE / ".git").exists():
+        return version
+    command = ["git", "-C", str(TREE), "log", "-1", "--format=%h of %cs"]
+    try:
+        found = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):  # such as no git, or another user's clone
+        return version
+    return f"{version}, commit {found.stdout.strip()}"
+
+
+def narrowed(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
+    """Return a configuration of some studies alone, given by name or folder."""
+    names = {Path(study).resolve().name for study in studies}
+    settings = {name: each for name, each in config.get("settings", {}).items() if name in names}
+    return config | {"studies": studies, "settings": settings}
 
 
 def differing(
     folder: Path,
-    left: list[Path],
+    made: Mapping[str, bool],
     config: dict[str, Any],
-    places: dict[str, str],
+    listed: Collection[str],
     processes: int,
 ) -> tuple[int, list[Difference]]:
-    """How many files follow from studies and runs, and which of them are others if they are
-    made again. left: files that nothing makes. places: of the studies. Raises ValueError if that
-    fails.
+    """Return how many files follow from studies and runs, and which of them are others if they are
+    made again, or cannot be. made: the files of a scale, and whether they do. config: with its
+    studies. listed: files of its list, to whose studies belongs what lies above all of them.
     """
+    places = {Path(study).resolve().name: study for study in config["studies"]}
+    known = {name.split("/")[0] for name in listed}
+    shown = [key for key in places if key in known] or [*places]
+    faults = []
     with tempfile.TemporaryDirectory() as away:
         again = Path(away, "results", folder.resolve().name)
-        shutil.copytree(folder, again, ignore=shutil.ignore_patterns("logs"))
-        for file in left:
-            (again / file.relative_to(folder)).unlink()
-        files = [file for pattern in _FOLLOW for file in sorted(again.glob(pattern))]
-        before = {str(file.relative_to(again)): sha256(file) for file in files}
-        # What lies above all studies is of those that the list names.
-        listed = {name.split("/")[0] for name in _listed(folder)}
-        shown = [key for key in places if key in listed] or [*places]
-        whole = [*shown, *(file.name for file in files if file.parent == again)]
-        for group in [whole, *([key] for key in places if key not in shown)]:
-            own = [file for file in files if file.relative_to(again).parts[0] in group]
-            studies = [places[key] for key in places if key in group]
-            _make(own, config, studies, away, processes)
-        return len(files), _changed(folder, before, again)
+        there = [name for name in made if (folder / name).is_file()]
+        for name in there:
+            (again / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(folder / name, again / name)
+        files = [name for name in there if made[name]]
+        for group in (shown, *([key] for key in places if key not in shown)):
+            own = [
+                again / name
+                for name in files
+                if (name.split("/")[0] if "/" in name else shown[0]) in group
+            ]
+            studies = narrowed(config, [places[key] for key in group])
+            faults += [
+                Difference(line, "what follows cannot be made again")
+                for line in _make(own, studies, away, processes)
+            ]
+        faults += [
+            Difference(str(folder / name), "made again, it is another one")
+            for name in files
+            if (again / name).is_file() and sha256(again / name) != sha256(folder / name)
+        ]
+    return len(files), faults
 
 
-def _make(
-    files: list[Path], config: dict[str, Any], studies: list[str], away: str, processes: int
-) -> None:
-    """Make files below a folder again, which follow from some studies. Raises ValueError."""
-    names = {Path(study).resolve().name for study in studies}
-    settings = {name: each for name, each in config.get("settings", {}).items() if name in names}
+def _make(files: list[Path], config: dict[str, Any], away: str, processes: int) -> list[str]:
+    """Make files below a folder again, which follow from the studies of a configuration, and return
+    what went wrong.
+    """
     workflow = Path(away, "Snakefile")
     workflow.write_text(
         f"module again:\n    snakefile: {str(TREE / 'workflow' / 'Snakefile')!r}\n"
-        f"    config: {config | {'studies': studies, 'settings': settings}!r}\n"
+        f"    config: {config!r}\n"
         f"    prefix: {away!r}\n\nuse rule * from again\n\n"
         # What a module does on start is not done.
         "onstart:\n    workflow.scheduler.job_rate_limiter = None\n"
@@ -119,17 +153,18 @@ def _make(
     done = subprocess.run(
         [
             *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
-            *("--cores", str(processes), "--nolock", "--drop-metadata"),
+            *("--cores", str(processes), "--nolock", "--drop-metadata", "--keep-going"),
             *("--workflow-profile", "none", "--scheduler", "greedy"),
             *("--allowed-rules", *_RULES, "--"),
-            *(file for file in files if file.suffix in _ENDINGS),
+            *files,
         ],
         capture_output=True,
         text=True,
     )
-    if done.returncode:
-        told = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        line = next((each for each in told if "full account:" in each), told[-1].strip())
-        if line.startswith(away):  # Snakemake ends with the files that a rule lacks
-            line = f"no {Path(line).relative_to(away)}"
-        raise ValueError(f"what follows from runs cannot be made again: {line}")
+    if not done.returncode:
+        return []
+    printed = (done.stdout + done.stderr).replace(f"{away}/", "")
+    lines = [line.strip() for line in printed.splitlines()]
+    told = [line.partition(" (full account:")[0] for line in lines if "full account:" in line]
+    # Snakemake ends with the files that a rule lacks.
+    return [*dict.fromkeys(told)] or [line for line in lines if line][-1:]

@@ -4,7 +4,6 @@ import base64
 import hashlib
 import json
 import re
-import subprocess
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -12,12 +11,11 @@ from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
-import bezierplan
-from bezierplan import places
 from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
 from bezierplan.analysis.numbers import baseline_comparison
 from bezierplan.analysis.outcome import headline
+from bezierplan.analysis.outcome.proof import made_by
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.running.inputs import Files
@@ -59,15 +57,16 @@ def page(
             data[kind] |= own
     _share_workspaces(data)
     repeats = [own.repeats for own in job.studies.values()]
+    verified = _verified(Path(proof)) if proof else None
     return SimpleNamespace(
         scale=job.scale,
         about_scale=answer.about_scale(job.scale, repeats, job.outcome),
-        made_by=made_by(),
+        made_by=verified["made_by"] if verified else made_by(),
         headline=_headline(
             [*evidence[:3]] if evidence else tables,
             {key: own.title for key, own in job.studies.items()},
         ),
-        verified=_verified(Path(proof)) if proof else None,
+        verified=verified,
         studies=studies,
         data=data
         | {
@@ -109,19 +108,6 @@ def _headline(tables: list | None, titles: dict[str, str]) -> headline.Headline 
     known = {*numbers["study"], *claims["study"]}
     names = {key: title for key, title in titles.items() if key in known}
     return headline.headline(numbers, claims, measured, names)
-
-
-def made_by() -> str:
-    """The version of this package, and of a clone the commit with its date."""
-    version = f"bezierplan {bezierplan.__version__}"
-    if not (places.TREE / ".git").exists():
-        return version
-    command = ["git", "-C", str(places.TREE), "log", "-1", "--format=%h of %cs"]
-    try:
-        found = subprocess.run(command, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError):  # such as no git, or another user's clone
-        return version
-    return f"{version}, commit {found.stdout.strip()}"
 
 
 def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:

@@ -13,6 +13,8 @@ class MethodView(NamedTuple):
 
     planner: str
     settings: dict[str, Any]
+    about: str
+    """What its planner does: the docstring of the planner's file."""
 
 
 class ArtefactView(NamedTuple):

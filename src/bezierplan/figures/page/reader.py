@@ -2,7 +2,6 @@
 cells are None. Columns keep their names; what is added to a row stands in the functions below.
 """
 
-import ast
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan import planners
 from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.numbers import comparison
@@ -120,17 +118,9 @@ def gap(tables: list[Row]) -> float | None:
 
 
 def _method(study: str, name: str, method: Any) -> Row:
-    """A method, with what its planner does: the head of the planner's file, which is read and not
-    imported.
-    """
-    planner = method.planner
-    file = (
-        Path(planner)
-        if planners.is_file(planner)
-        else Path(planners.__file__).with_name(f"{planner}.py")
-    )
-    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    about = [" ".join(paragraph.replace("`", "").split()) for paragraph in text.split("\n\n")]
+    """A method, with the paragraphs on what its planner does."""
+    paragraphs = method.about.split("\n\n")
+    about = [" ".join(paragraph.replace("`", "").split()) for paragraph in paragraphs]
     return method._asdict() | {
         "name": name,
         "address": address(study, "method", name),

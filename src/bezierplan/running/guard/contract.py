@@ -156,11 +156,13 @@ def _findings(
             one, again, *_ = plans_of[name]
             if not _repeats(one, again) and _repeats(one, there.result):
                 yield ContractFinding(name, "random numbers", False, ELSEWHERE)
-    fault = "" if draws else worker.UNDRAWN
+    differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
     if getattr(module, "deterministic", False):
-        differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
-        fault = "other plans from other generators, but deterministic = True" if differ else ""
-    yield ContractFinding("all problems", "random numbers", not fault, fault)
+        said = "other plans from other generators, but deterministic = True" if differ else ""
+        passed = not differ
+    else:
+        said, passed = "" if differ else worker.ALIKE[draws], draws or differ
+    yield ContractFinding("all problems", "random numbers", passed, said)
 
 
 def replies(

@@ -85,7 +85,7 @@ def _described(planner: str) -> Traits:
     """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
     file = str(Path(planner).resolve())
     work = partial(described, planner=file)
-    (said,) = process.answers(work, file, "when it is imported", LIMIT)
+    (said,) = process.answers(work, "when it is imported", LIMIT)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)

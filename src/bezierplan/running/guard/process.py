@@ -21,6 +21,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bezierplan.machine import opened
 from bezierplan.places import PACKAGE
 from bezierplan.running.guard import plain, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, how_ended
@@ -53,14 +54,13 @@ def isolated_replies(
             yield each._replace(number=-1)
     work = work._replace(planner=str(Path(work.planner).resolve()))
     todo = partial(worker.plain_answers, work=work, tasks=tasks, again=again)
-    for each in answers(todo, work.planner, name, limit, hashing, _STARTS):
+    for each in answers(todo, name, limit, hashing, _STARTS):
         reply = worker.Reply(*each)
         yield reply._replace(result=plain.unpacked(reply.result))
 
 
 def answers(
     work: Callable[[Callable[[str], None]], Iterator[Any]],
-    planner: str,
     name: str,
     limit: float | None = None,
     hashing: int = 0,
@@ -69,18 +69,17 @@ def answers(
     """What a function answers in a process of its own.
 
     work: the function, which gets another one to call with the name of each run that begins, and
-    yields plain values. planner: the path of its file. name: what messages begin with before a run
-    begins. limit: seconds for each run. hashing: seed of `hash`. starts:
-    seconds that the process has at least until the first run begins, whatever the limit. Raises
-    PlannerFailure, naming the run, if the function raises an exception, the process crashes, ends
-    itself, takes too long or leaves others behind.
+    yields plain values. name: what messages begin with before a run begins. limit: seconds for each
+    run. hashing: seed of `hash`. starts: seconds that the process has at least until the first run
+    begins, whatever the limit. Raises PlannerFailure, naming the run, if the function raises an
+    exception, the process crashes, ends itself, takes too long or leaves others behind.
     """
     with tempfile.TemporaryDirectory(prefix="bezierplan-") as folder:
         job, lines, printed, empty = (
             Path(folder, part) for part in ("job.pickle", "answers.json", "printed.txt", "empty")
         )
         # Arrays that cannot be written are restored as such.
-        job.write_bytes(pickle.dumps((planner, name, work), protocol=5))
+        job.write_bytes(pickle.dumps((name, work), protocol=5))
         lines.touch()
         empty.mkdir()
         with printed.open("wb") as output:
@@ -154,6 +153,7 @@ def _read(lines: Path, name: str, end: str) -> list[Any]:
         elif kind == "fails":
             failures.setdefault(*value)
         else:
+            opened.SEEN.update(value)
             break
     else:
         failures[f"{name}: {end}"] = ""

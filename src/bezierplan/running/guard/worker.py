@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.machine.digest import covers
-from bezierplan.places import PACKAGE, cache_folder
+from bezierplan.machine import opened
 from bezierplan.planners import Plan, planner_module
 from bezierplan.running import answer
 from bezierplan.running.guard import plain
@@ -40,10 +39,13 @@ from bezierplan.workspaces.worlds import World
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
 """Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
 
-UNDRAWN = (
-    "draws no number from the rng that it is given, so that all repeats count as one; a planner "
-    "that never draws says deterministic = True"
-)
+ALIKE = {
+    False: "all repeats are equal and count as one, for it draws no number from the rng that it is "
+    "given; a planner that needs none says deterministic = True",
+    True: "all repeats are equal, though it draws numbers from the rng that it is given: has it a "
+    "seed of its own?",
+}
+"""What is said of a planner whose repeats are equal, by whether it drew random numbers."""
 
 # Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until
 # those after the first have taken this many seconds, or until one takes so long that its loading
@@ -217,12 +219,12 @@ def main(job_file: str, lines_file: str) -> None:
     """Do what a file says, and append lines to another one; then end, whatever a planner has left
     to do at an exit.
     """
-    planner, name, work = pickle.loads(Path(job_file).read_bytes())
+    name, work = pickle.loads(Path(job_file).read_bytes())
     end_with_parent()
     for limit, most in LIMITS.items():
         with suppress(ValueError, OSError, AttributeError):  # not every system has each
             resource.setrlimit(getattr(resource, limit), (most, most))
-    opened = _opened(planner)
+    opened.watch()
     with open(lines_file, "a", encoding="utf-8") as lines:
 
         def say(kind: str, value: Any) -> None:
@@ -237,7 +239,6 @@ def main(job_file: str, lines_file: str) -> None:
         try:
             for each in work(begin):
                 _refuse_left(name)
-                _refuse_opened(name, planner, opened)
                 if isinstance(each, PlannerFailure):
                     say("fails", [str(each), account(each)])
                 else:
@@ -246,40 +247,11 @@ def main(job_file: str, lines_file: str) -> None:
         except BaseException as error:
             text = str(error) if isinstance(error, PlannerFailure) else f"{name}: {told(error)}"
             say("fails", [text, account(error)])
-        say("done", True)
+        say("done", sorted(opened.SEEN))
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):
                 stream.flush()
         os._exit(0)
-
-
-def _opened(planner: str) -> set[Path]:
-    """The files that this process opens from now on in the folder of a planner's study."""
-    folders = Path(planner).parents
-    study = next((each for each in folders if (each / "experiments.yaml").is_file()), folders[0])
-    libraries = (sys.prefix, str(PACKAGE), str(cache_folder()))
-    opened = set()
-
-    def note(event: str, arguments: tuple[Any, ...]) -> None:
-        if event == "open" and isinstance(arguments[0], str | bytes):
-            file = os.path.realpath(os.fsdecode(arguments[0]))
-            if Path(file).is_relative_to(study) and not file.startswith(libraries):
-                opened.add(Path(file))
-
-    sys.addaudithook(note)
-    return opened
-
-
-def _refuse_opened(name: str, planner: str, files: set[Path]) -> None:
-    """Raise PlannerFailure for an opened file of which no digest would show a change."""
-    for file in sorted(files):
-        if file.is_file() and str(file) != planner and not covers(planner, file):
-            raise PlannerFailure(
-                f"{name}: opens {file.parent.name}/{file.name}; runs would not be made again after "
-                "a change of it: its values are settings, or stand in a module that the planner "
-                "imports"
-            )
-    files.clear()
 
 
 def _refuse_left(name: str) -> None:
