@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -35,24 +35,37 @@ _BLOCK = 64
 _CENTRE = 1e-9
 
 
-@allocation_free
+@compiled
 def parts(points: np.ndarray) -> int:
-    """Number of equal parameter intervals over each of which a Bézier piece (degree + 1, 2), in
-    cells, moves less than one cell.
+    """Return the number of equal parameter intervals over each of which a Bézier piece (degree + 1,
+    2), in cells, moves less than one cell.
+    """
+    x, y = np.empty((2, len(points)))
+    return parts_by(points, x, y)
+
+
+@allocation_free
+def parts_by(points: np.ndarray, x: np.ndarray, y: np.ndarray) -> int:
+    """Return the `parts` of a piece. x, y: (degree,) or more, scratch.
 
     The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
-    degree times the longest leg of its polygon.
+    degree times the longest leg of its polygon; the two halves of the curve have polygons of their
+    own, which zigzag less and so tell the speed more closely.
     """
     degree = len(points) - 1
-    total = longest = 0.0
     for i in range(degree):
-        leg = math.sqrt(
-            (points[i + 1, 0] - points[i, 0]) ** 2 + (points[i + 1, 1] - points[i, 1]) ** 2
-        )
-        total += leg
-        longest = max(longest, leg)
+        x[i], y[i] = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
     if degree == 1:
-        return max(1, math.ceil(2.0 * total))
+        return max(1, math.ceil(2.0 * math.sqrt(x[0] ** 2 + y[0] ** 2)))
+    total = longest = 0.0
+    for left in range(degree, 0, -1):  # the legs of both halves are the sides of de Casteljau's
+        for i in (0, left - 1):
+            leg = math.sqrt(x[i] ** 2 + y[i] ** 2)
+            total += 0.5 * leg
+            longest = max(longest, leg)
+        for i in range(left - 1):
+            x[i] = 0.5 * (x[i] + x[i + 1])
+            y[i] = 0.5 * (y[i] + y[i + 1])
     return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
 
 
