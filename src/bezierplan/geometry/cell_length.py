@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -28,6 +28,11 @@ _ON_LINE = 1e-9
 # Two grid lines that a segment crosses at parameters this close are crossed at their corner.
 _IN_CORNER = 1e-6
 
+# A Bézier piece of more control points than this is cut into so many.
+HIGH, CUT = 12, 8
+# A multiple of this is the number of parts of each.
+QUARTERS = 4
+
 # Legs of a polyline whose lengths are computed together.
 _BLOCK = 64
 
@@ -35,38 +40,44 @@ _BLOCK = 64
 _CENTRE = 1e-9
 
 
-@compiled
+@allocation_free
 def parts(points: np.ndarray) -> int:
     """Return the number of equal parameter intervals over each of which a Bézier piece (degree + 1,
     2), in cells, moves less than one cell.
+
+    The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
+    degree times the longest leg of its polygon.
     """
-    x, y = np.empty((2, len(points)))
-    return parts_by(points, x, y)
+    degree = len(points) - 1
+    total = longest = 0.0
+    for i in range(degree):
+        leg = math.sqrt(
+            (points[i + 1, 0] - points[i, 0]) ** 2 + (points[i + 1, 1] - points[i, 1]) ** 2
+        )
+        total += leg
+        longest = max(longest, leg)
+    if degree == 1:
+        return max(1, math.ceil(2.0 * total))
+    count = math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+    return count if degree < HIGH else -(-count // QUARTERS) * QUARTERS
 
 
 @allocation_free
-def parts_by(points: np.ndarray, x: np.ndarray, y: np.ndarray) -> int:
-    """Return the `parts` of a piece. x, y: (degree,) or more, scratch.
-
-    The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
-    degree times the longest leg of its polygon; the two halves of the curve have polygons of their
-    own, which zigzag less and so tell the speed more closely.
+def cut(pieces: np.ndarray, points: int) -> None:
+    """Cut a Bézier piece of so many control points, the first of some (2**k, points or more, 2),
+    into all of them, of equal length in its parameter, in place (de Casteljau).
     """
-    degree = len(points) - 1
-    for i in range(degree):
-        x[i], y[i] = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
-    if degree == 1:
-        return max(1, math.ceil(2.0 * math.sqrt(x[0] ** 2 + y[0] ** 2)))
-    total = longest = 0.0
-    for left in range(degree, 0, -1):  # the legs of both halves are the sides of de Casteljau's
-        for i in (0, left - 1):
-            leg = math.sqrt(x[i] ** 2 + y[i] ** 2)
-            total += 0.5 * leg
-            longest = max(longest, leg)
-        for i in range(left - 1):
-            x[i] = 0.5 * (x[i] + x[i + 1])
-            y[i] = 0.5 * (y[i] + y[i + 1])
-    return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+    step = len(pieces) // 2
+    while step > 0:
+        for k in range(0, len(pieces), 2 * step):
+            left, right = pieces[k].reshape(-1), pieces[k + step].reshape(-1)  # x, y, x, y, ...
+            for i in range(2 * points):
+                right[i] = left[i]
+            for level in range(1, points):
+                for i in range(2 * (points - level)):
+                    right[i] = 0.5 * (right[i] + right[i + 2])
+                left[2 * level], left[2 * level + 1] = right[0], right[1]
+        step //= 2
 
 
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
@@ -74,6 +85,23 @@ def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
     x, y, t, power = np.empty((4, last + 1))
     write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
+
+
+def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
+    degree + 1, 2). A piece of high degree is cut, for its polygon zigzags too much to tell how fast
+    it is.
+    """
+    points = curve.shape[1]
+    xs, ys = [], []
+    for piece in curve:
+        shorter = np.repeat(piece[None], CUT if points > HIGH else 1, axis=0)
+        cut(shorter, points)
+        for each in shorter:
+            x, y = sample(each, parts(each))
+            xs.append(x)
+            ys.append(y)
+    return np.concatenate(xs), np.concatenate(ys)
 
 
 @allocation_free
@@ -282,10 +310,7 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
-    xs, ys = zip(
-        *(sample(piece, parts(piece)) for piece in grid.in_cells(curves.bezier_pieces(path)))
-    )
-    return np.concatenate(xs), np.concatenate(ys)
+    return walk(grid.in_cells(curves.bezier_pieces(path)))
 
 
 def length4(path: Path, grid: Grid) -> float:

@@ -270,9 +270,9 @@ def search(
             if pool.cost[row] < min(best_cost, _UNFIT):
                 best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
-        count, pairs = gene_lists.count_in(pool, 0, size, 0, kinds)
+        count = gene_lists.count_kinds(pool, 0, size, 0, kinds)
         distinct[iteration] = count
-        population_q[iteration] = pairs / (size * (size - 1) / 2)
+        population_q[iteration] = gene_lists.mean_q(kinds, count, size)
         if iteration == rules.iterations:
             break
 
@@ -291,9 +291,8 @@ def search(
             losses += invalid
             extra_batches += 1
             if watched:
-                count, more = gene_lists.count_in(pool, before, fill, count, kinds)
-                pairs += more
-                q[iteration] = pairs / (fill * (fill - 1) / 2)
+                count = gene_lists.count_kinds(pool, before, fill, count, kinds)
+                q[iteration] = gene_lists.mean_q(kinds, count, fill)
                 alike = q[iteration] > eta
         batches += extra_batches
         loops += extra_batches > 0
@@ -331,7 +330,7 @@ def _fill_population(rng, known, child, pool, field, rules, scratch):
                 copy(known, child)
                 count = len(known)
             else:
-                count = _random_chromosome(rng, child, field, most)
+                count = _random_chromosome(rng, child, field.choices, most)
             cost = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
             barren += 1
@@ -360,19 +359,24 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
         cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(2):
-                count = gene_lists.cross(pool, head, tail if crossed else head, cut, child)
+                count = gene_lists.cross(
+                    pool, head, tail if crossed else head, cut, field.index, child
+                )
                 if mutated:
-                    count = _mutate(rng, child, count, field, rules)
+                    count = _mutate(rng, child, count, field.settable, rules.mutation_rate)
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
-                        count = _random_chromosome(rng, child, field, most)
+                        count = _random_chromosome(rng, child, field.choices, most)
                     cost = _validated(child[:count], memory, field, rules, limit, scratch)
                     tries += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
                         break
-                if cost < np.inf and not _is_too_alike(
-                    child[:count], cost, pool, fill, eta, field, rules
+                if cost < np.inf and not (
+                    rules.diversity > Diversity.more_offspring
+                    and _is_too_alike(
+                        child[:count], cost, pool, fill, eta, len(field.points), rules.diversity
+                    )
                 ):
                     gene_lists.put(child, count, cost, pool, fill)
                     fill += 1
@@ -410,25 +414,25 @@ def _parents(rng, wheel):
 
 
 @allocation_free
-def _mutate(rng, child, count, field, rules):
+def _mutate(rng, child, count, settable, rate):
     """Change random genes, except those that must not be set; returns how many are 1."""
     # From one gene that changes to the next: the gaps of independent trials of equal probability.
-    unchanged = math.log1p(-rules.mutation_rate) if rules.mutation_rate < 1.0 else -np.inf
+    unchanged = math.log1p(-rate) if rate < 1.0 else -np.inf
     gene = gene_lists.gap(rng, unchanged)
-    while gene < len(field.points):
-        if field.settable[gene]:
+    while gene < len(settable):
+        if settable[gene]:
             count = gene_lists.flip(child, count, gene)
         gene += 1 + gene_lists.gap(rng, unchanged)
     return count
 
 
 @allocation_free
-def _random_chromosome(rng, child, field, most):
+def _random_chromosome(rng, child, choices, most):
     """Write a chromosome of 1 to `most` random genes; returns how many."""
-    wanted = min(integer(rng, 1, most + 1), len(field.choices))
+    wanted = min(integer(rng, 1, most + 1), len(choices))
     count = 0
     while count < wanted:
-        gene = field.choices[integer(rng, 0, len(field.choices))]
+        gene = choices[integer(rng, 0, len(choices))]
         place = gene_lists.place_of(child, count, gene)
         if place == count or child[place] != gene:
             count = gene_lists.insert(child, count, place, gene)
@@ -436,15 +440,13 @@ def _random_chromosome(rng, child, field, most):
 
 
 @allocation_free
-def _is_too_alike(ones, cost, pool, fill, eta, field, rules):
-    """Whether a diversity rule rejects a child (Section 3.3)."""
-    if rules.diversity == Diversity.unique:
-        for i in range(fill):
-            if cost == pool.cost[i] and same(ones, pool.ones[i, : pool.count[i]]):
-                return True
-    if rules.diversity == Diversity.relaxing:
-        total = 0.0
-        for i in range(fill):
-            total += gene_lists.q(ones, pool.ones[i, : pool.count[i]], len(field.points))
-        return total > (1.0 - eta) * fill
-    return False
+def _is_too_alike(ones, cost, pool, fill, eta, genes, diversity):
+    """Return whether the rule `relaxing` or `unique` rejects a child (Section 3.3)."""
+    total = 0.0
+    for i in range(fill):
+        other = pool.ones[i, : pool.count[i]]
+        if diversity == Diversity.relaxing:
+            total += gene_lists.q(ones, other, genes)
+        elif cost == pool.cost[i] and same(ones, other):
+            return True
+    return diversity == Diversity.relaxing and total > (1.0 - eta) * fill

@@ -9,13 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import (
+    CUT,
+    HIGH,
+    QUARTERS,
+    cut,
     occupied_cells,
-    parts_by,
+    parts,
     sum_of_steps,
     write_samples,
     write_touched_cells,
 )
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, inlined
 from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 
 # More control points make a chromosome invalid: the curve's degree is at most 60.
@@ -37,14 +41,13 @@ _FREE, _OCCUPIED, _UNKNOWN = range(3)
 class Scratch(NamedTuple):
     """Room for a chromosome's curve, overwritten by each `validate`.
 
-    order: (points,) its genes. points: (points, 2) its polygon. piece: (4, 2) one of its cubic
-    pieces. x, y: (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,)
-    the cells that it touches; before that, columns: the reach of some samples.
+    points: (points, 2) its polygon. pieces: (points, points, 2) those of its pieces. x, y:
+    (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that
+    it touches; before that, columns: the reach of some samples.
     """
 
-    order: np.ndarray
     points: np.ndarray
-    piece: np.ndarray
+    pieces: np.ndarray
     x: np.ndarray
     y: np.ndarray
     t: np.ndarray
@@ -64,9 +67,8 @@ def scratch_for(field: Field) -> Scratch:
     )
     numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
     return Scratch(
-        np.empty(MOST_POINTS, dtype=np.int64),
         np.empty((MOST_POINTS + 2, 2)),
-        np.empty((4, 2)),
+        np.empty((MOST_POINTS, MOST_POINTS + 2, 2)),
         *numbers,
         *cells,
     )
@@ -85,14 +87,19 @@ def validate(
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf
-    points = scratch.points[: write_polygon(ones, field, scratch.points, scratch.order)]
-    chained = rules.curve == CurveKind.chain and len(points) > 3
-    sight, least = _at_first_sight(points, chained, field.room, scratch)
+    points = scratch.points[: write_polygon(ones, field, scratch.points)]
+    pieces = _write_pieces(points, rules.curve, field.room, scratch)
+    if pieces == 0:
+        return np.inf
+    size = 4 if pieces == len(points) - 3 else len(points)
+    sight, least = _at_first_sight(pieces, size, field.room, scratch)
     if sight == _OCCUPIED or _are_near(points, rules.least_distance):
         return np.inf
     if sight == _FREE and least > limit:
         return least
-    count = _write_curve(points, chained, scratch)
+    count = 0
+    for k in range(pieces):
+        count += _write_samples_of_piece(scratch.pieces[k, :size], count, scratch)
     x, y = scratch.x[:count], scratch.y[:count]
     if sight == _UNKNOWN:
         count = write_touched_cells(x, y, scratch.columns, scratch.rows)
@@ -101,7 +108,30 @@ def validate(
     return sum_of_steps(x, y, scratch.t)
 
 
-@allocation_free
+@inlined
+def _write_pieces(points, curve, room, scratch):
+    """Write the pieces of a curve that are walked one after another; returns their number, or 0 if
+    an end of one is in an occupied cell.
+    """
+    if curve == CurveKind.chain and len(points) > 3:
+        for k in range(len(points) - 3):
+            _write_piece(points, k, scratch.pieces[k])
+        return len(points) - 3
+    pieces = CUT if len(points) > HIGH else 1
+    if pieces > 1:
+        x, y, ends = scratch.x, scratch.y, QUARTERS * pieces - 1
+        write_samples(points, ends + 1, 1, 1, ends, x, y, scratch.t, scratch.power)
+        for i in range(ends):
+            if _reach(x[i], y[i], room) == 0:
+                return 0
+    for i in range(len(points)):
+        for axis in range(2):
+            scratch.pieces[0, i, axis] = points[i, axis]
+    cut(scratch.pieces[:pieces], len(points))
+    return pieces
+
+
+@inlined
 def _are_near(points, least_distance):
     """Return whether two control points are closer than a distance (`Distance Threshold`)."""
     for i in range(1, len(points) - 1):
@@ -112,20 +142,16 @@ def _are_near(points, least_distance):
     return False
 
 
-@allocation_free
-def _at_first_sight(points, chained, room, scratch):
+@inlined
+def _at_first_sight(pieces, size, room, scratch):
     """What a walk over the cells of a curve would find, if a look at some of its samples tells:
     `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; and a length that the polyline through its samples
     has at least.
     """
-    if not chained:
-        return _sight_of_piece(points, _FIRST_PARTS, room, scratch)
     sight, least = _FREE, 0.0
-    pieces = len(points) - 3
     for k in range(pieces):
-        _write_piece(points, k, scratch.piece)
         seen, chords = _sight_of_piece(
-            scratch.piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
+            scratch.pieces[k, :size], max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
         )
         if seen == _OCCUPIED:
             return _OCCUPIED, 0.0
@@ -135,13 +161,13 @@ def _at_first_sight(points, chained, room, scratch):
     return sight, least
 
 
-@allocation_free
+@inlined
 def _sight_of_piece(piece, least_parts, room, scratch):
     """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only
     if there are fewer samples), then of all samples of those parts that come too close to obstacles
     to tell.
     """
-    last = parts_by(piece, scratch.x, scratch.y)
+    last = parts(piece)
     stride = max(1, last // least_parts)
     ends = -(-last // stride) + 1
     x, y, reach = scratch.x, scratch.y, scratch.columns
@@ -263,24 +289,10 @@ def _write_piece(points, k, piece):
         piece[3, axis] = goes + (outer - goes) * after / (after + 1)
 
 
-@allocation_free
-def _write_curve(points, chained, scratch):
-    """Write x and y of samples of the curve (equation 2, or a chain) less than a cell apart;
-    returns their number.
-    """
-    if not chained:
-        return _write_samples_of_piece(points, 0, scratch)
-    count = 0
-    for k in range(len(points) - 3):
-        _write_piece(points, k, scratch.piece)
-        count += _write_samples_of_piece(scratch.piece, count, scratch)
-    return count
-
-
-@allocation_free
+@inlined
 def _write_samples_of_piece(piece, place, scratch):
     """Write x and y of a piece's samples from a place on; returns their number."""
     x, y = scratch.x[place:], scratch.y[place:]
-    last = parts_by(piece, x, y)
+    last = parts(piece)
     write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)
     return last + 1

@@ -98,18 +98,20 @@ def gap(rng: np.random.Generator, log_stay: float) -> int:
 
 
 @allocation_free
-def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
-    """Write, to a child, the genes of one chromosome before a cut and of another from it on;
-    returns how many are 1.
+def cross(pool: Pool, head: int, tail: int, cut: int, index: np.ndarray, child: np.ndarray) -> int:
+    """Write, to a child, the genes of one chromosome with an index before a cut and of another from
+    it on; returns how many are 1.
     """
-    count = 0
-    for i in range(pool.count[head]):
-        if pool.ones[head, i] < cut:
-            child[count] = pool.ones[head, i]
-            count += 1
-    for i in range(pool.count[tail]):
-        if pool.ones[tail, i] >= cut:
-            child[count] = pool.ones[tail, i]
+    i = j = count = 0
+    while i < pool.count[head] or j < pool.count[tail]:
+        from_head = j == pool.count[tail] or (
+            i < pool.count[head] and pool.ones[head, i] < pool.ones[tail, j]
+        )
+        gene = pool.ones[head, i] if from_head else pool.ones[tail, j]
+        i += from_head
+        j += not from_head
+        if (index[gene] < cut) == from_head:
+            child[count] = gene
             count += 1
     return count
 
@@ -125,8 +127,8 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 
 class Kinds(NamedTuple):
     """Distinct chromosomes of a pool, of which many are alike. head: (places,) a place of each in
-    the pool; copies: (places,) how many there are; q: (places, places) the Q of each pair. marked:
-    (genes,) scratch, all 0 before and after.
+    the pool; copies: (places,) how many there are; q: (places, places) the Q of each with those
+    before it. marked: (genes,) scratch, all 0 before and after.
     """
 
     head: np.ndarray
@@ -140,18 +142,17 @@ def empty_kinds(places: int, genes: int) -> Kinds:
     """Return room for the kinds of a pool of `places` chromosomes of `genes` genes."""
     return Kinds(
         np.empty(places, np.int64),
-        np.empty(places, np.int64),
+        np.empty(places),
         np.empty((places, places)),
         np.zeros(genes, np.int64),
     )
 
 
 @allocation_free
-def count_in(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> tuple[int, float]:
-    """Count the chromosomes at the places from `first` on among `count` kinds. Returns how many
-    kinds there are then, and the sum of the Q of each of these chromosomes and those before it.
+def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> int:
+    """Count the chromosomes at the places from `first` on among `count` kinds; returns how many
+    kinds there are then.
     """
-    total = 0.0
     for place in range(first, fill):
         kind = 0
         while kind < count and not _is_kind(pool, place, kinds.head[kind]):
@@ -159,10 +160,22 @@ def count_in(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> tup
         if kind == count:
             _add_kind(pool, place, count, kinds)
             count += 1
-        for other in range(count):
-            total += kinds.copies[other] * kinds.q[kind, other]
-        kinds.copies[kind] += 1
-    return count, total
+        kinds.copies[kind] += 1.0
+    return count
+
+
+@allocation_free
+def mean_q(kinds: Kinds, count: int, fill: int) -> float:
+    """Return the mean Q of all pairs of `fill` chromosomes of `count` kinds; that of two equal ones
+    is 1.
+    """
+    total = 0.0
+    for kind in range(count):
+        others = 0.5 * (kinds.copies[kind] - 1.0)
+        for other in range(kind):
+            others += kinds.copies[other] * kinds.q[kind, other]
+        total += kinds.copies[kind] * others
+    return total / (fill * (fill - 1) / 2)
 
 
 @allocation_free
@@ -175,18 +188,19 @@ def _is_kind(pool, place, head):
 
 @allocation_free
 def _add_kind(pool, place, kind, kinds):
-    """Add the chromosome at a place as a new kind without copies, and its Q with all kinds."""
-    kinds.head[kind], kinds.copies[kind] = place, 0
+    """Add the chromosome at a place as a new kind without copies, and its Q with the others."""
+    kinds.head[kind], kinds.copies[kind] = place, 0.0
     ones, genes = pool.ones[place, : pool.count[place]], len(kinds.marked)
     for gene in ones:
         kinds.marked[gene] = 1
-    for other in range(kind + 1):
+    for other in range(kind):
         head, both = kinds.head[other], 0
         for k in range(pool.count[head]):
             both += kinds.marked[pool.ones[head, k]]
         only_one, only_other = len(ones) - both, pool.count[head] - both
-        q = q_statistic(both, genes - both - only_one - only_other, only_one, only_other)
-        kinds.q[kind, other] = kinds.q[other, kind] = q
+        kinds.q[kind, other] = q_statistic(
+            both, genes - both - only_one - only_other, only_one, only_other
+        )
     for gene in ones:
         kinds.marked[gene] = 0
 
