@@ -13,7 +13,7 @@ HOSTILE = "x</script> <script>window.RUN=1</script>"
 EXPERIMENTS = """
 title: A walk through a room
 methods: {line: {planner: straight_line}, around: {planner: shortest_path}}
-baselines: {best: {planner: rounded_shortest_path, settings: {turning_radius: 0.1, offset: 0.0}}}
+baselines: {best: {planner: rounded_shortest_path, settings: {turning_radius: 0.1, excess: .inf}}}
 settings: {}
 workspaces: {room: {kind: grid, file: room.txt, cell: 1, unit: m}}
 problems: {across: {workspace: room, start: [0.5, 0.5], target: [3.5, 2.5]}}

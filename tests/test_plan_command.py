@@ -60,8 +60,9 @@ def test_without_a_method_it_is_the_rounded_shortest_path(capsys):
     numbers = re.fullmatch(r"([\d.]+) m, ([\d.e-]+) % above the shortest path", lines["length"])
     length, gap = map(float, numbers.groups())
     assert length / SHORTEST - 1 == pytest.approx(gap / 100, abs=1e-5)
-    # One over the turning radius of 0.02 times 20 m.
-    assert lines["curvature"].startswith("at most 2.5")
+    assert gap == pytest.approx(1, abs=0.05)
+    radius = float(lines["turning radius"].removesuffix(" m"))
+    assert lines["curvature"].startswith(f"at most {1 / radius:.3f}")
     assert lines["CPU time"].endswith(" s")
 
 
@@ -145,7 +146,7 @@ def test_files_that_are_written(capsys, tmp_path):
     assert rows[0, :3].tolist() == [0.0, 2.0, 10.0]
     assert rows[-1, 1:3] == pytest.approx([18.0, 10.0])
     assert np.ptp(np.diff(rows[:, 0])) < 1e-6
-    assert np.abs(rows[:, 4]).max() == pytest.approx(2.5, rel=1e-3)
+    assert np.abs(rows[:, 4]).max() == pytest.approx(1 / 0.743, rel=1e-3)
     planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.geojson")
     line = json.loads((tmp_path / "path.geojson").read_text())
     assert line["geometry"]["coordinates"][0] == [2.0, 10.0]
@@ -237,7 +238,7 @@ FAULTS = {
     "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: unknown"),
     "value": (
         [GAPS, *ENDS, "--settings", "{turning_radius: -1}"],
-        "--settings: turning_radius: -1; expected a number from 0 to 100000",
+        "--settings: turning_radius: -1; expected a number at least 0",
     ),
     "settings": (
         [GAPS, *ENDS, "--settings", "fast"],

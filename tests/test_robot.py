@@ -121,7 +121,8 @@ def test_around_circles_the_length_is_exact():
     circles = bp.Circles(
         (-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m"
     )
-    answer = bp.plan(bp.Problem("disc", circles, (-2.0, 0.0), (2.0, 0.0)), robot_radius=0.5)
+    problem = bp.Problem("disc", circles, (-2.0, 0.0), (2.0, 0.0))
+    answer = bp.plan(problem, robot_radius=0.5, turning_radius=0.1)
     assert answer.shortest == pytest.approx(
         2 * math.sqrt(4 - 1.5**2) + 3 * math.asin(0.75), rel=1e-12
     )
@@ -267,8 +268,8 @@ def test_way_points_are_passed_in_their_order():
         for start, target in legs
     ]
     assert answer.shortest == pytest.approx(sum(parts), rel=1e-12)
-    assert answer.turning_radius == 0.0  # way points are corners
-    assert answer.corners
+    assert answer.turning_radius == 0.3
+    assert answer.corners  # way points
     assert bp.plan(two_walls(), "shortest_path", via=via).length == pytest.approx(
         sum(parts), rel=1e-9
     )

@@ -291,7 +291,7 @@ def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, repla
 def rounded(problem, state):
     """A planner whose curves touch what they pass."""
     return rounded_shortest_path.plan(
-        problem, np.random.default_rng(0), turning_radius=1.0, offset=0.0
+        problem, np.random.default_rng(0), turning_radius=1.0, excess=math.inf
     ), state
 
 

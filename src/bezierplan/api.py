@@ -196,8 +196,8 @@ class Answer(Judgement):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner
-        is left, infinite without turns; nan of other planners.
+        Radius of the tightest round turn, where the planner is `rounded_shortest_path`: infinite
+        without turns, 0 if all of them are corners; nan of other planners.
     cpu_s : float
         CPU time of the planner, in seconds; nan of a run of a study.
     """
@@ -378,7 +378,9 @@ def plan(
         Way points (x, y), in their order: the path joins paths from one to the next, with a corner
         where their directions differ. For the planner without a method and `shortest_path`.
     **settings
-        Settings in place of the method's own. Without a method: `turning_radius` and `offset`.
+        Settings in place of the method's own. Without a method: `turning_radius`, the smallest
+        radius that turns should have, and `excess`, the share by which the path may be longer than
+        the shortest. With neither, turns are as wide as a path at most 1 % longer allows.
 
     Returns
     -------
@@ -413,7 +415,9 @@ def plan(
     if np.shape(via) != (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
-    name, planner, module, preset = _planner(method, problem.workspace)
+    name, planner, module, preset = _planner(method)
+    if planner == planning.ROUNDED:
+        preset |= planning.rounding(settings)
     if places and planner not in planning.CHAINED:
         raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {name}")
     settings = preset | {
@@ -505,13 +509,13 @@ def _are_numbers(values: Any, *shape: int) -> bool:
     return array.dtype.kind in "fiu" and array.shape == shape
 
 
-def _planner(method: Method | None, workspace: Workspace) -> tuple[str, str, Any, dict[str, Any]]:
+def _planner(method: Method | None) -> tuple[str, str, Any, dict[str, Any]]:
     """Of a method: how messages call it, its planner as a name of this package or a file (empty for
     others), the planner's module, and settings.
     """
     if method is None or method == planning.ROUNDED:
         module = planner_module(planning.ROUNDED)
-        return planning.ROUNDED, planning.ROUNDED, module, planning.preset(workspace)
+        return planning.ROUNDED, planning.ROUNDED, module, {}
     if isinstance(method, str):
         planner, preset = named(method)
         return method, planner, interface.loaded(planner, f"method: {method}"), preset

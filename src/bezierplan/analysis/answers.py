@@ -99,11 +99,13 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
         "curvature": f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}",
     }
     if not math.isnan(answer.turning_radius):
-        wish, radius = answer.settings["turning_radius"], answer.turning_radius
-        kept = planning.keeps_radius(wish, radius)
-        words["turning radius"] = f"{wish:.6g} {unit} asked" + (
-            " and kept" if kept else f", {radius:.6g} {unit} kept: no room for more"
-        )
+        asked, radius = answer.settings["turning_radius"], answer.turning_radius
+        words["turning radius"] = f"{radius:.6g} {unit}"
+        if math.isfinite(asked):
+            kept = planning.keeps_radius(asked, radius)
+            words["turning radius"] = f"{asked:.6g} {unit} asked" + (
+                " and kept" if kept else f", {radius:.6g} {unit} kept: no room for more"
+            )
     words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
     if answer.feasible:
         words["length"] += f", {_digits(100 * max(answer.gap, 0.0), 3)} % above the shortest path"

@@ -1,11 +1,13 @@
 """A baseline: what a practitioner would drive, the exact shortest path with its corners rounded.
 
 At each obstacle corner around which the shortest path turns, a circle of the turning radius is
-placed so that the corner lies inside it; the path is a string of straight legs and arcs pulled
-tight around these circles. Corners too close together for two circles, such as those at the end of
-a wall, form one turn of two circles side by side. The certified check then judges the path. Where
-an arc or a leg enters an obstacle, or there is no room for the circles, the adjacent circles
-shrink, in the end to the corner itself: the shortest path is free, so this ends in a free path.
+placed so that it contains the corner; the path is a string of straight legs and arcs pulled tight
+around these circles, each of which lies as deep behind its corner as the string pulls it. Corners
+too close together for two circles, such as those at the end of a wall, share one. The certified
+check then judges the path. What is wanted, in this order: as few corners as possible stay sharp;
+the tightest turn is as wide as can be, up to the radius that is asked; then the others are; and the
+path is no longer than allowed. Radii come from one fixed ladder, whatever is asked, so asking for
+more never gives less.
 """
 
 import math
@@ -15,34 +17,54 @@ import numpy as np
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
-from bezierplan.geometry.region import Region, from_origin, region
-from bezierplan.kernels import compiled
+from bezierplan.geometry.region import from_origin, region
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.limits import LARGEST
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
-extra = ("turns", "tight_turns", "least_radius")
+extra = ("turns", "corners", "least_radius")
 exact = True
 deterministic = True
 
 # A vertex at which the shortest path turns by less than this, in radians, is not a corner.
 _STRAIGHT = 1e-9
 
-# A circle shrinks by this factor at each step, and to its corner once below the given share of the
-# turning radius.
-_SHRINKING = 0.8
-_SMALLEST = 0.01
+# Radii are this factor to a whole power. It is what an answer can miss the widest turn by.
+_RUNG = 1.02
+
+# A turn without room for this share of the path's length as its radius stays a corner; no turn is
+# wider than that multiple of it.
+_TIGHTEST, _WIDEST = 1e-3, 10.0
+
+# How often the string is pulled tight. The circles move less with each time.
+_PULLS = 12
+
+# How many rungs the search for the widest turn goes down at once, while circles are crowded.
+_STRIDE = 16
+
+# After so many pulls circles that still overlap will not part.
+_CROWDED_PULLS = 2
+
+# How often, at most, circles that overlap are pushed apart.
+_PUSHES = 100
 
 # An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at
 # most 4e-6 of the radius.
 _PIECE_ANGLE = math.pi / 4
+_MOST_PIECES = 9
 
 # A point of the shortest path this close to a circle, in units, lies on it.
 _ON_CIRCLE = 1e-3
+
+# A share by which lengths may differ by rounding.
+_SAME = 1e-9
+
+# What a trial of radii can find.
+_FREE, _BLOCKED, _CROWDED, _TOO_LONG = range(4)
 
 
 class Turns(NamedTuple):
@@ -50,7 +72,7 @@ class Turns(NamedTuple):
 
     corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the
     obstacle, 0 for a corner. before, after: unit vectors, the path's direction before and after the
-    turn. side: 1 for a turn to the left, -1 to the right.
+    turn. side: 1 for a turn to the left, -1 to the right. angle: by how much it turns, in radians.
     """
 
     corner: np.ndarray
@@ -58,26 +80,56 @@ class Turns(NamedTuple):
     before: np.ndarray
     after: np.ndarray
     side: np.ndarray
+    angle: np.ndarray
+
+
+class Scene(NamedTuple):
+    """What the path must suit: start and target (2, 2), the region's origin (2,), the length that
+    it may have at most; and how many paths have been tried (1,).
+    """
+
+    ends: np.ndarray
+    origin: np.ndarray
+    limit: float
+    trials: np.ndarray
+
+
+class String(NamedTuple):
+    """A string pulled tight around m circles, in arrays with room for one circle a turn.
+
+    crowded: the number of a circle that has no room beside its neighbours, or -1. count: m. first,
+    last: the turns that a circle contains. centres: (m, 2). radii: (m,). legs: (m + 1, 2, 2) ends
+    of the straight parts. sweeps: (m,) angles of the arcs, each in the sense of its turn.
+    """
+
+    crowded: int
+    count: int
+    first: np.ndarray
+    last: np.ndarray
+    centres: np.ndarray
+    radii: np.ndarray
+    legs: np.ndarray
+    sweeps: np.ndarray
 
 
 class Settings(NamedTuple):
-    """How round the path is. Without room, both are smaller; extra columns report by how much."""
+    """How round the path is. Without room its turns are tighter; extra columns tell."""
 
     turning_radius: Annotated[
         float,
-        Range(0, LARGEST),
+        Range(0, math.inf),
         About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS),
     ]
-    offset: Annotated[
+    excess: Annotated[
         float,
-        Range(0, LARGEST),
-        About("distance to keep from the corners around which the path turns", unit=UNITS),
+        Range(0, math.inf),
+        About("share by which the path may be longer than the exact shortest one"),
     ]
 
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """The exact shortest path (`shortest_paths.shortest_path`), rounded.
+    """Return the exact shortest path (`shortest_paths.shortest_path`), rounded.
 
     Parameters
     ----------
@@ -90,48 +142,60 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     -------
     Plan
         Its objective is its length, in units, or infinite if there is no path. Extra columns:
-        turns, the number of corners; tight_turns, those with a smaller radius than the turning
-        radius; least_radius, the smallest radius of a turn, in units: 0 where a corner is left,
-        infinite if there are no turns.
+        turns, how often the shortest path turns; corners, how many turns have no room to be round;
+        least_radius, the smallest radius of the others, in units, infinite if there are no turns
+        and 0 if all are corners.
     """
-    return _answer(
-        problem, shortest_paths.shortest_path(problem), region(problem.workspace), settings
-    )
-
-
-def _answer(
-    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings
-) -> Plan:
-    """The shortest path, rounded."""
+    bound = shortest_paths.shortest_path(problem)
     if math.isinf(bound.length):
-        nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
+        nothing = {"turns": 0, "corners": 0, "least_radius": math.nan}
         return Plan.of_one(None, math.inf, "no way", nothing)
-    turns = turns_of(bound.points, problem.workspace)
-    points, radii, tries, free = _rounded(problem, turns, blocked, settings)
-    if not free:  # around corners of a grown obstacle there may be less room than for a circle
-        points, radii, further, _ = _rounded(
-            problem, turns_of(bound.points, None), blocked, settings
-        )
-        tries += further
+    points, radii, trials = _round(problem, bound, settings)
     path = Path("cubic_chain", points)
     length = curves.length(path)
+    is_round = radii > 0
     return Plan(
         path=path,
         objective=length,
         claimed_feasible=True,
-        evaluations=tries,
+        evaluations=trials,
         history=np.array([length]),
         stop="exact",
         extra={
             "turns": len(radii),
-            "tight_turns": int((radii < settings.turning_radius * (1 - 1e-9)).sum()),
-            "least_radius": float(radii.min(initial=math.inf)),
+            "corners": int((~is_round).sum()),
+            "least_radius": float(
+                radii[is_round].min(initial=math.inf) if is_round.any() or not len(radii) else 0
+            ),
         },
     )
 
 
+def _round(
+    problem: Problem, bound: shortest_paths.Bound, settings: Settings
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return control points of the rounded path, the radius (n,) of each turn, and the number of
+    paths tried.
+    """
+    blocked = region(problem.workspace)
+    scene = Scene(
+        np.array([problem.start, problem.target], dtype=float),
+        -from_origin(np.zeros(2), blocked),
+        (1 + _SAME) * (1 + settings.excess) * bound.length,
+        np.zeros(1, dtype=np.int64),
+    )
+    # Around corners of a grown obstacle there may be less room than for a circle.
+    for workspace in (problem.workspace, None):
+        turns = turns_of(bound.points, workspace)
+        radii, is_free = _widen(scene, turns, blocked, bound.length, settings.turning_radius)
+        if is_free:
+            break
+    points, _ = _draw(scene, turns, _shorter(scene, turns, radii))
+    return points, radii, int(scene.trials[0])
+
+
 def turns_of(points: np.ndarray, workspace: object) -> Turns:
-    """The turns of a shortest path, a polyline (n, 2). Around circles and round corners the
+    """Return the turns of a shortest path, a polyline (n, 2). Around circles and round corners the
     vertices of an arc are one turn.
     """
     heading = _unit(np.diff(points, axis=0))
@@ -149,19 +213,22 @@ def turns_of(points: np.ndarray, workspace: object) -> Turns:
         corner = np.where(round_circle[:, None], centres[nearest], corner)
         radius = np.where(round_circle, radii[nearest], 0.0)
         first[1:] = ~(round_circle[1:] & round_circle[:-1] & (nearest[1:] == nearest[:-1]))
-    begin, end = _runs(first)
+    begin = np.flatnonzero(first)
+    end = np.append(begin[1:], len(bends))[: len(begin)] - 1
+    angle = np.abs(np.arctan2(bend, (heading[:-1] * heading[1:]).sum(axis=1)))[bends]
     return Turns(
         corner[begin],
         radius[begin],
         heading[bends[begin]],
         heading[bends[end] + 1],
         np.sign(bend[bends[begin]]),
+        np.add.reduceat(angle, begin) if len(begin) else angle,
     )
 
 
 def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
-    """Centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close to it,
-    in units, its vertices lie.
+    """Return centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close
+    to it, in units, its vertices lie.
     """
     if isinstance(workspace, Circles):
         return workspace.centres, workspace.radii, _ON_CIRCLE
@@ -177,172 +244,377 @@ def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
     return np.empty((0, 2)), np.empty(0), 0.0
 
 
-def _runs(begins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First and last indices (m,) of the runs that begin where `begins`, bool (n,), is true; the
-    first element is always true.
-    """
-    first = np.flatnonzero(begins)
-    return first, np.append(first[1:], len(begins))[: len(first)] - 1
-
-
 def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
-def _rounded(
-    problem: Problem, turns: Turns, blocked: Region, settings: Settings
-) -> tuple[np.ndarray, np.ndarray, int, bool]:
-    """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and
-    whether the path is free.
+@compiled
+def _widen(scene, turns, region, shortest, asked):
+    """Return the radius (n,) of each turn, and whether the path is free."""
+    levels = _ladder(min(asked, _TIGHTEST * shortest), min(asked, _WIDEST * shortest))
+    top = len(levels) - 1
+    radii = turns.radius.copy()
 
-    Where two circles of the same sense get in each other's way, they become one turn and are pulled
-    inwards in the same direction. Where that does not help, circles are pulled inwards less, and
-    only then shrink. There are no points if that does not help either, as around two round corners
-    of a grown map that touch.
-    """
-    count = len(turns.side)
-    # Share of the desired radius, share of the way inwards up to the corner's clearance, and
-    # whether a turn begins at a corner.
-    share, pull, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
-    tries = 0
-    while True:
-        tries += 1
-        radii, centres = _circles(turns, begins, share, pull, settings)
-        legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
-        if bent_back.any() and _join(begins, bent_back, turns):
-            continue
-        wrong = _beside(bent_back) | crowded
-        if wrong.any():
-            slack = wrong & (pull > 0) & (radii > turns.radius)
-            if not (slack.any() or share[_of_turns(wrong, begins)].any()):
-                return np.empty((0, 2)), radii, tries, False
-            pull[slack] = np.where(pull[slack] > 0.1, pull[slack] * _SHRINKING, 0.0)
-            _shrink(share, wrong & ~slack, begins)
-            continue
-        points, owner = _chain(legs, sweeps, centres, radii, turns)
-        pieces = np.ascontiguousarray(
-            points[np.arange(0, len(points) - 1, 3)[:, None] + np.arange(4)]
-        )
-        hit = _colliding(from_origin(pieces, blocked), blocked)
-        bad = np.zeros(count + 2, dtype=bool)  # with start and target around the turns
-        bad[owner[hit].ravel()] = True
-        if not bad[1:-1].any() or not share[bad[1:-1]].any():
-            return points, radii, tries, not bad.any()
-        _shrink(share, bad[1:-1], begins)
+    # Turns without room for the least radius stay corners. The nearer end of a leg that meets
+    # something may not have been to blame, so each is tried again.
+    live = np.ones(len(radii), dtype=np.bool_)
+    found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))
+    while found != _FREE and live.any():
+        if not live[first : last + 1].any():
+            first, last = 0, len(live) - 1
+        live[first : last + 1] = False
+        found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))
+    for i in np.flatnonzero(~live):
+        live[i] = True
+        live[i] = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))[0] == _FREE
 
+    # The tightest turn. Wider circles have less room beside each other, and strings around them are
+    # longer; but a path that meets something at some radius may be free at a larger one.
+    k = top
+    while (
+        k > _STRIDE
+        and _try(scene, turns, region, _raise(radii, turns, live, levels[k]))[0] >= _CROWDED
+    ):
+        k -= _STRIDE
+    k = min(k + _STRIDE, top)
+    while k > 0 and _try(scene, turns, region, _raise(radii, turns, live, levels[k]))[0] != _FREE:
+        k -= 1
+    radii = _raise(radii, turns, live, levels[k])
 
-def _of_turns(which: np.ndarray, begins: np.ndarray) -> np.ndarray:
-    """The marked circles, along with the rest of their turns."""
-    turn = np.cumsum(begins)
-    return np.isin(turn, turn[which])
-
-
-def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:
-    """Shrink the marked circles, along with the rest of their turns."""
-    which = _of_turns(which, begins)
-    share[which] = np.where(share[which] > _SMALLEST, share[which] * _SHRINKING, 0.0)
-
-
-def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
-    """Merge corners at which the string bends back into one turn with the nearer neighbour of the
-    same sense; false if there is none.
-    """
-    joined = False
-    gap = np.hypot(*np.diff(turns.corner, axis=0).T)
-    gap = np.where((turns.side[1:] == turns.side[:-1]) & begins[1:], gap, np.inf)
-    beside = np.concatenate([[np.inf], gap, [np.inf]])
-    for i in np.flatnonzero(bent_back):
-        if min(beside[i], beside[i + 1]) < np.inf:
-            begins[i if beside[i] <= beside[i + 1] else i + 1] = False
-            joined = True
-    return joined
-
-
-def _beside(marks: np.ndarray) -> np.ndarray:
-    """The marked ones (n,) and their neighbours."""
-    wide = np.concatenate([[False], marks, [False]])
-    return wide[:-2] | wide[1:-1] | wide[2:]
-
-
-def _circles(
-    turns: Turns, begins: np.ndarray, share: np.ndarray, pull: np.ndarray, settings: Settings
-) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie
-    inside them, at the depth of the offset.
-    """
-    margin = turns.radius + share * settings.offset
-    radii = np.maximum(margin, share * settings.turning_radius)
-    first, last = _runs(begins)
-    inward = _unit(turns.after[last] - turns.before[first])[np.cumsum(begins) - 1]
-    return radii, turns.corner + (pull * (radii - margin))[:, None] * inward
-
-
-def _string(
-    problem: Problem, turns: Turns, centres: np.ndarray, radii: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Legs (n + 1, 2, 2) of the string around circles, sweeps (n,) of its arcs in their own sense,
-    whether (n,) the string bends back at a circle, and whether a circle overlaps a neighbour so
-    that no leg fits between them.
-    """
-    ends = np.vstack([problem.start, centres, problem.target])
-    signed = np.concatenate([[0.0], turns.side * radii, [0.0]])
-    step = np.diff(ends, axis=0)
-    distance = np.hypot(*step.T)
-    across = np.diff(signed)
-    fits = np.abs(across) <= distance
-    tilt = np.arcsin(
-        np.divide(across, distance, out=np.zeros_like(across), where=fits & (distance > 0))
-    )
-    direction = np.arctan2(step[:, 1], step[:, 0]) - tilt
-    normal = np.column_stack([-np.sin(direction), np.cos(direction)])
-    legs = np.stack(
-        [ends[:-1] - signed[:-1, None] * normal, ends[1:] - signed[1:, None] * normal], axis=1
-    )
-    sweeps = turns.side * ((np.diff(direction) + math.pi) % math.tau - math.pi)
-    return legs, np.maximum(sweeps, 0.0), sweeps < -_STRAIGHT, ~fits[:-1] | ~fits[1:]
-
-
-def _chain(
-    legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.ndarray, turns: Turns
-) -> tuple[np.ndarray, np.ndarray]:
-    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece (k, 2) the
-    two ends or turns between which it lies, numbered from 0 at the start; for an arc, its turn
-    twice.
-    """
-    points, owner = [legs[0, :1]], []
-    for number, (begin, end) in enumerate(legs):
-        points.append(begin + (end - begin) * np.array([[1 / 3], [2 / 3], [1.0]]))
-        owner.append((number, number + 1))
-        if number == len(sweeps) or radii[number] == 0.0 or sweeps[number] == 0.0:
-            continue
-        parts = math.ceil(sweeps[number] / _PIECE_ANGLE)
-        turned = turns.side[number] * sweeps[number] / parts
-        spoke = end - centres[number]
-        handle = 4 / 3 * math.tan(turned / 4)
-        for angle in turned * np.arange(parts):
-            a, b = (_turned(spoke, each) for each in (angle, angle + turned))
-            points.append(
-                centres[number] + np.array([a + handle * _quarter(a), b - handle * _quarter(b), b])
-            )
-            owner.append((number + 1, number + 1))
-        points[-1][-1] = legs[number + 1, 0]
-    points[-1][-1] = legs[-1, 1]  # to the last bit
-    return np.concatenate(points), np.array(owner)
-
-
-def _turned(vector: np.ndarray, angle: float) -> np.ndarray:
-    return math.cos(angle) * vector + math.sin(angle) * _quarter(vector)
-
-
-def _quarter(vector: np.ndarray) -> np.ndarray:
-    """A vector rotated counterclockwise by a right angle."""
-    return np.array([-vector[1], vector[0]])
+    # The others grow together, and whichever meets something stops.
+    while k < top and live.any():
+        found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[top]))
+        if found == _FREE:
+            return _raise(radii, turns, live, levels[top]), True
+        above = top
+        while above - k > 1:
+            middle = (k + above) // 2
+            there = _try(scene, turns, region, _raise(radii, turns, live, levels[middle]))
+            if there[0] == _FREE:
+                k = middle
+            else:
+                above = middle
+                found, first, last = there
+        radii = _raise(radii, turns, live, levels[k])
+        if found == _TOO_LONG or not live[first : last + 1].any():
+            break
+        live[first : last + 1] = False
+    return radii, _try(scene, turns, region, radii)[0] == _FREE
 
 
 @compiled
-def _colliding(pieces, blocked):
-    """Whether (n,) pieces (n, 4, 2) enter the blocked region."""
-    hit = np.empty(len(pieces), dtype=np.bool_)
-    for k in range(len(pieces)):
-        hit[k] = first_collision(pieces[k : k + 1], blocked)[0] < np.inf
-    return hit
+def _ladder(least, most):
+    """Return the radii to try, ascending: whole powers of one number, between two given ends."""
+    if least == most:
+        return np.array([most])
+    low = math.floor(math.log(least) / math.log(_RUNG)) + 1
+    high = math.ceil(math.log(most) / math.log(_RUNG)) - 1
+    levels = np.empty(high - low + 3)
+    levels[0], levels[-1] = least, most
+    for k in range(low, high + 1):
+        levels[k - low + 1] = _RUNG**k
+    return levels
+
+
+@compiled
+def _raise(radii, turns, live, level):
+    """Return radii (n,) with those of live turns raised to a level, or as wide as the obstacle."""
+    return np.where(live, np.maximum(level, turns.radius), radii)
+
+
+@compiled
+def _try(scene, turns, region, radii):
+    """Try the path with some radii (n,): return what was found, and if it is blocked, the first and
+    the last of the turns that are to blame.
+    """
+    scene.trials[0] += 1
+    string = _shorter(scene, turns, radii)
+    if string.crowded >= 0:
+        return _CROWDED, string.first[string.crowded], string.last[string.crowded]
+    if _length(string) > scene.limit:
+        return _TOO_LONG, 0, len(radii) - 1
+    points, part = _draw(scene, turns, string)
+    piece = np.empty((1, 4, 2))
+    for k in range(len(part)):
+        for i in range(4):
+            for axis in range(2):
+                piece[0, i, axis] = points[3 * k + i, axis] - scene.origin[axis]
+        at = first_collision(piece, region)[0]
+        if at < np.inf and string.count == 0:
+            return _BLOCKED, 0, -1
+        if at < np.inf:
+            # An arc's own turns, or those at the nearer end of a leg.
+            circle = part[k] // 2 - (part[k] % 2 == 0 and at < 0.5)
+            circle = min(max(circle, 0), string.count - 1)
+            return _BLOCKED, string.first[circle], string.last[circle]
+    return _FREE, 0, 0
+
+
+@compiled
+def _shorter(scene, turns, radii):
+    """Return the string around circles of some radii (n,)."""
+    string, other = _pull(scene, turns, radii, False), _pull(scene, turns, radii, True)
+    return other if _length(other) < _length(string) else string
+
+
+@allocation_free
+def _length(string):
+    """Return the length of a string, infinite if its circles are crowded."""
+    length = 0.0 if string.crowded < 0 else math.inf
+    for (ax, ay), (bx, by) in string.legs[: string.count + 1]:
+        length += math.hypot(bx - ax, by - ay)
+    for k in range(string.count):
+        length += string.radii[k] * string.sweeps[k]
+    return length
+
+
+@compiled
+def _pull(scene, turns, radii, patient):
+    """Return the string pulled tight around circles of some radii (n,). Circles in each other's way
+    join at once, or, if patient, when the others have come to rest: either may be shorter.
+
+    Each circle lies where the string's pull and its corners hold it: as far inwards as these allow.
+    """
+    n = len(radii)
+    first, last, count = np.arange(n), np.arange(n), n
+    centres, reach, side = np.empty((n, 2)), radii.copy(), turns.side.copy()
+    legs, heading = np.empty((n + 1, 2, 2)), np.empty((n + 1, 2))
+    inward, sweeps, wrong = np.empty((n, 2)), np.empty(n), -1
+    pulls = 0
+    while pulls < _PULLS:
+        for k in range(count):
+            for axis in range(2):
+                # Half of the old direction and half of the new one: without the old one the
+                # circles would swing to and fro.
+                pull = turns.after[last[k], axis] - turns.before[first[k], axis]
+                if pulls > 0:
+                    pull = inward[k, axis] + heading[k + 1, axis] - heading[k, axis]
+                inward[k, axis] = pull
+            size = math.hypot(inward[k, 0], inward[k, 1])
+            if size > 0.0:
+                inward[k] /= size
+            if not _place(turns, first[k], last[k], reach[k], inward[k], centres[k]):
+                return String(k, count, first, last, centres, reach, legs, sweeps)
+        _part(scene.ends, turns, first, last, count, reach, side, centres)
+        wrong = crowded = _join(scene.ends, centres, side * reach, count, legs, heading)
+        for k in range(count):
+            expected = turns.angle[first[k] : last[k] + 1].sum()
+            cross = heading[k, 0] * heading[k + 1, 1] - heading[k, 1] * heading[k + 1, 0]
+            dot = heading[k, 0] * heading[k + 1, 0] + heading[k, 1] * heading[k + 1, 1]
+            more = side[k] * math.atan2(cross, dot) - expected
+            sweeps[k] = expected + (more + math.pi) % math.tau - math.pi
+            if sweeps[k] < -_STRAIGHT and (wrong == crowded or sweeps[k] < sweeps[wrong]):
+                wrong = k
+        pulls += 1
+        if crowded >= 0 and pulls > _CROWDED_PULLS:
+            break
+        if wrong < 0:
+            continue
+        # A circle that bends the string back shares one with its nearer neighbour, unless the
+        # string passes outside its corners without it.
+        gone, other = wrong, _neighbour(centres, side, count, wrong)
+        beside = other >= 0 and _contains(
+            turns, first[wrong], last[wrong], reach[other], centres[other, 0], centres[other, 1]
+        )
+        if patient and pulls < _PULLS:
+            continue
+        if not beside and _is_needless(
+            scene.ends, turns, centres, side * reach, first, last, count, wrong
+        ):
+            if pulls < _PULLS:
+                continue
+        elif other < 0:
+            continue
+        else:
+            gone, other = max(wrong, other), min(wrong, other)
+            last[other] = last[gone]
+            reach[other] = max(reach[other], reach[gone])
+        count -= 1
+        for k in range(gone, count):
+            first[k], last[k] = first[k + 1], last[k + 1]
+            reach[k], side[k] = reach[k + 1], side[k + 1]
+        pulls = 0
+    return String(wrong, count, first, last, centres, reach, legs, sweeps)
+
+
+@allocation_free
+def _neighbour(centres, side, count, k):
+    """Return the nearer neighbour of a circle to the same side, or -1."""
+    nearest, gap = -1, np.inf
+    for j in (k - 1, k + 1):
+        if 0 <= j < count and side[j] == side[k]:
+            apart = math.hypot(centres[j, 0] - centres[k, 0], centres[j, 1] - centres[k, 1])
+            if apart < gap:
+                nearest, gap = j, apart
+    return nearest
+
+
+@allocation_free
+def _place(turns, first, last, radius, inward, centre):
+    """Put the centre (2,) of a circle as far inwards as the corners allow that it contains; return
+    whether it can contain them all.
+    """
+    for i in range(first, last + 1):
+        depth = radius - turns.radius[i]
+        x = turns.corner[i, 0] + depth * inward[0]
+        y = turns.corner[i, 1] + depth * inward[1]
+        if _contains(turns, first, last, radius, x, y):
+            centre[0], centre[1] = x, y
+            return True
+    # Between two corners: where circles of the centre's distance from each meet.
+    deepest = -math.inf
+    for i in range(first, last):
+        for j in range(i + 1, last + 1):
+            dx = turns.corner[j, 0] - turns.corner[i, 0]
+            dy = turns.corner[j, 1] - turns.corner[i, 1]
+            apart = math.hypot(dx, dy)
+            one, other = radius - turns.radius[i], radius - turns.radius[j]
+            if apart == 0.0 or not abs(one - other) <= apart <= one + other:
+                continue
+            share = 0.5 * (1.0 + (one * one - other * other) / (apart * apart))
+            height = math.sqrt(max(0.0, (one / apart) ** 2 - share * share))
+            for sign in (-1.0, 1.0):
+                x = turns.corner[i, 0] + share * dx - sign * height * dy
+                y = turns.corner[i, 1] + share * dy + sign * height * dx
+                depth = x * inward[0] + y * inward[1]
+                if depth > deepest and _contains(turns, first, last, radius, x, y):
+                    deepest = depth
+                    centre[0], centre[1] = x, y
+    return deepest > -math.inf
+
+
+@allocation_free
+def _part(ends, turns, first, last, count, reach, side, centres):
+    """Move circles apart that overlap the next one, of the other sense, or contain an end of the
+    path, as far as their corners allow: no leg of a string fits there.
+    """
+    for _ in range(_PUSHES):
+        largest = 0.0
+        for k in range(-1, count):
+            if 0 <= k < count - 1 and side[k] == side[k + 1]:
+                continue
+            x, y = centres[k] if k >= 0 else ends[0]
+            next_x, next_y = centres[k + 1] if k + 1 < count else ends[1]
+            radius = reach[k] if k >= 0 else 0.0
+            next_radius = reach[k + 1] if k + 1 < count else 0.0
+            apart = math.hypot(next_x - x, next_y - y)
+            missing = (1.0 + 2.0 * _SAME) * (radius + next_radius) - apart
+            if apart == 0.0 or missing <= 0.0:
+                continue
+            largest = max(largest, missing / (radius + next_radius))
+            for j, share in ((k, -0.5), (k + 1, 0.5)):
+                if 0 <= j < count:
+                    centres[j, 0] += share * missing / apart * (next_x - x)
+                    centres[j, 1] += share * missing / apart * (next_y - y)
+                    _hold(turns, first[j], last[j], reach[j], centres[j])
+        if largest <= _SAME:
+            break
+
+
+@allocation_free
+def _hold(turns, first, last, radius, centre):
+    """Move a circle back to where it contains its corners, one after the other."""
+    for i in range(first, last + 1):
+        x, y = centre[0] - turns.corner[i, 0], centre[1] - turns.corner[i, 1]
+        depth, apart = radius - turns.radius[i], math.hypot(x, y)
+        if apart > depth:
+            centre[0] = turns.corner[i, 0] + depth / apart * x
+            centre[1] = turns.corner[i, 1] + depth / apart * y
+
+
+@allocation_free
+def _contains(turns, first, last, radius, x, y):
+    """Return whether a circle contains the corners of some turns."""
+    for i in range(first, last + 1):
+        distance = math.hypot(x - turns.corner[i, 0], y - turns.corner[i, 1])
+        if distance + turns.radius[i] > radius * (1.0 + _SAME):
+            return False
+    return True
+
+
+@allocation_free
+def _join(ends, centres, signed, count, legs, heading):
+    """Draw the legs between circles, and their directions; return the number of a circle that lies
+    so close to another one that no leg fits between them, or -1.
+    """
+    crowded = -1
+    for k in range(count + 1):
+        if not _draw_leg(ends, centres, signed, count, k - 1, k, legs[k], heading[k]):
+            crowded = min(k, count - 1)
+    return crowded
+
+
+@allocation_free
+def _draw_leg(ends, centres, signed, count, k, j, leg, heading):
+    """Draw the leg (2, 2) from circle k, or the start, to circle j, or the target, and its unit
+    direction (2,); return whether it fits. signed: radii, positive where the string turns left.
+    """
+    ax, ay = centres[k] if k >= 0 else ends[0]
+    bx, by = centres[j] if j < count else ends[1]
+    one = signed[k] if k >= 0 else 0.0
+    other = signed[j] if j < count else 0.0
+    distance = math.hypot(bx - ax, by - ay)
+    across = other - one
+    fits = abs(across) <= distance
+    # Where it does not fit, both circles touch it at one place.
+    tilt = (
+        math.asin(across / distance)
+        if fits and distance > 0.0
+        else math.copysign(0.5 * math.pi, across)
+    )
+    direction = math.atan2(by - ay, bx - ax) - tilt
+    heading[0], heading[1] = math.cos(direction), math.sin(direction)
+    leg[0, 0], leg[0, 1] = ax + one * heading[1], ay - one * heading[0]
+    leg[1, 0], leg[1, 1] = bx + other * heading[1], by - other * heading[0]
+    return fits
+
+
+@compiled
+def _is_needless(ends, turns, centres, signed, first, last, count, k):
+    """Return whether the leg past a circle, from the one before it to the next, leaves its corners
+    on the side to which the path turns there.
+    """
+    leg, heading = np.empty((2, 2)), np.empty(2)
+    if not _draw_leg(ends, centres, signed, count, k - 1, k + 1, leg, heading):
+        return False
+    for i in range(first[k], last[k] + 1):
+        x, y = turns.corner[i, 0] - leg[0, 0], turns.corner[i, 1] - leg[0, 1]
+        if turns.side[i] * (heading[0] * y - heading[1] * x) < turns.radius[i]:
+            return False
+    return True
+
+
+@compiled
+def _draw(scene, turns, string):
+    """Return control points (3 k + 1, 2) of legs and arcs as cubic pieces, and what each piece (k,)
+    is: 2 i for the leg to circle i, 2 i + 1 for the arc around it.
+    """
+    most = string.count * (_MOST_PIECES + 1) + 1
+    points, part = np.empty((3 * most + 1, 2)), np.empty(most, dtype=np.int64)
+    points[0] = scene.ends[0]
+    pieces = 0
+    for k in range(string.count + 1):
+        begin, end = string.legs[k]
+        for third in range(1, 4):
+            points[3 * pieces + third] = begin + (end - begin) * (third / 3)
+        part[pieces] = 2 * k
+        pieces += 1
+        if k == string.count or string.radii[k] == 0.0 or string.sweeps[k] <= 0.0:
+            continue
+        arcs = math.ceil(string.sweeps[k] / _PIECE_ANGLE)
+        angle = turns.side[string.first[k]] * string.sweeps[k] / arcs
+        handle = 4 / 3 * math.tan(angle / 4)
+        cosine, sine = math.cos(angle), math.sin(angle)
+        centre_x, centre_y = string.centres[k]
+        x, y = end - string.centres[k]
+        for _ in range(arcs):
+            along = points[3 * pieces + 1 : 3 * pieces + 4]
+            along[0, 0], along[0, 1] = centre_x + x - handle * y, centre_y + y + handle * x
+            x, y = cosine * x - sine * y, sine * x + cosine * y
+            along[1, 0], along[1, 1] = centre_x + x + handle * y, centre_y + y - handle * x
+            along[2, 0], along[2, 1] = centre_x + x, centre_y + y
+            part[pieces] = 2 * k + 1
+            pieces += 1
+        points[3 * pieces] = string.legs[k + 1, 0]
+    points[3 * pieces] = scene.ends[1]  # to the last bit
+    return points[: 3 * pieces + 1], part[:pieces]

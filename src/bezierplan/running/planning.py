@@ -3,7 +3,7 @@ of all.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -14,17 +14,18 @@ from bezierplan.planners import Plan
 from bezierplan.running import answer, problems
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
-from bezierplan.workspaces.grown import original
-from bezierplan.workspaces.problem import Path, Problem, Workspace
+from bezierplan.workspaces.problem import Path, Problem
 
 ROUNDED = "rounded_shortest_path"
-"""The planner without a wish, and the one with a turning radius."""
+"""The planner without a method, and the one with a turning radius."""
 
 CHAINED = (ROUNDED, "shortest_path")
 """Planners whose paths can be joined: chains of pieces."""
 
-SHARE = 0.02
-"""The turning radius without a wish, as a share of the longer side of the map itself."""
+EXCESS = 0.01
+"""Where no turning radius is asked for, turns are as wide as a path allows that is longer than the
+shortest by this share at most.
+"""
 
 # Two directions that differ by less, in radians, are no corner.
 _STRAIGHT = 1e-8
@@ -33,12 +34,13 @@ _STRAIGHT = 1e-8
 _SAME = 1e-9
 
 
-def preset(workspace: Workspace) -> dict[str, Any]:
-    """Settings of the planner with a turning radius where none are given, the same for a map that
-    has grown by a robot's radius.
+def rounding(given: Collection[str]) -> dict[str, float]:
+    """Return settings of the planner with a turning radius, where some are given: a radius that is
+    asked for may make the path as long as it needs.
     """
-    x_low, x_high, y_low, y_high = original(workspace).bounds
-    return {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0}
+    if "turning_radius" in given:
+        return {"excess": math.inf}
+    return {"turning_radius": math.inf, "excess": EXCESS}
 
 
 def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
@@ -107,8 +109,8 @@ def joined(answers: Sequence[Plan]) -> Plan:
     extra = {name: sum(answer.extra[name] for answer in answers) for name in answers[0].extra}
     if "least_radius" in extra:
         least = min(answer.extra["least_radius"] for answer in answers)
-        extra |= {name: extra[name] + corners for name in ("turns", "tight_turns")}
-        extra["least_radius"] = 0.0 if corners else least
+        extra |= {name: extra[name] + corners for name in ("turns", "corners")}
+        extra["least_radius"] = least
     points = [paths[0].points, *(path.points[1:] for path in paths[1:])]
     objective = sum(answer.objective for answer in answers)
     return answers[0]._replace(
@@ -128,6 +130,6 @@ def _has_corner(arriving: Path, leaving: Path) -> bool:
     return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
 
 
-def keeps_radius(wish: float, radius: float) -> bool:
+def keeps_radius(asked: float, radius: float) -> bool:
     """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
-    return radius >= wish * (1 - _SAME)
+    return radius >= asked * (1 - _SAME)
