@@ -335,7 +335,7 @@ def _fill_population(rng, known, child, pool, field, rules, scratch):
             evaluations += 1
             barren += 1
             if barren % _BARREN == 0 and cost == np.inf:
-                if found and most == rules.most_points:
+                if found:
                     break
                 most = min(2 * most, rules.most_points)
         found = found or cost < np.inf
