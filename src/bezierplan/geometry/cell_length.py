@@ -1,9 +1,11 @@
 """The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a
 diagonal one (elhoseny2017, Section 4.6).
 
-The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve
-touches: a free diagonal of N cells costs 1.5 N, any other curve that is monotone in x and y about 2
-N. `cells8` leaves out the corner cells of that sequence, as line rasterisation usually does.
+The paper counts points on the curve, and does not say how near they lie. `length_by_points` counts
+points a cell apart. The nearer they lie, the more of the cells that the curve touches are counted,
+up to all of them: `cells4`, by which a free diagonal of N cells costs 1.5 N and any other curve
+that is monotone in x and y about 2 N. `cells8` leaves out the corner cells of that sequence, as
+line rasterisation usually does.
 
 In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i
 reaches from i to i + 1.
@@ -311,6 +313,26 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
     return walk(grid.in_cells(curves.bezier_pieces(path)))
+
+
+def length_by_points(path: Path, grid: Grid) -> float:
+    """Return the length of a path, in units, that counts points of equal distance along it, at most
+    a cell apart: a step from the cell of one to a neighbouring cell counts 1, a diagonal one 1.5.
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> field = from_lines(["....", "...."], cell=1.0, unit="m")
+    >>> length_by_points(Path("polyline", np.array([[0.5, 0.5], [2.5, 0.5], [3.5, 1.5]])), field)
+    3.5
+    """
+    walked = np.column_stack(samples(path, grid))
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(walked, axis=0).T))])
+    wanted = np.linspace(0.0, at[-1], math.ceil(at[-1]) + 1)
+    points = np.column_stack([np.interp(wanted, at, along) for along in walked.T])
+    steps = np.abs(np.diff(np.floor(points), axis=0))
+    return (
+        float((STRAIGHT * steps.max(axis=1) + (DIAGONAL - STRAIGHT) * steps.min(axis=1)).sum())
+        * grid.cell
+    )
 
 
 def length4(path: Path, grid: Grid) -> float:

@@ -88,8 +88,8 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
 
 @compiled
 def distances(walls: np.ndarray, row: int, column: int, steps: np.ndarray) -> np.ndarray:
-    """Return the distance (rows, columns) from a cell to each cell over free cells and their eight neighbours,
-    infinite where there is no path.
+    """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
+    neighbours, infinite where there is no path.
 
     walls: the cells with a frame of occupied cells around them.
     """
