@@ -4,15 +4,13 @@
 Coordinates and lengths are in cells from the grid's lower left corner.
 """
 
-import heapq
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import STEPS
+from bezierplan.workspaces.lattice import distances
 
 
 class Field(NamedTuple):
@@ -53,10 +51,9 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
     )
     column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
     points = np.column_stack([column, row]) + 0.5
-    settable = (column < columns) & (row < rows)
-    settable[settable] = ~grid.occupied[row[settable], column[settable]]
-    for end in np.floor(ends):
-        settable &= (column != end[0]) | (row != end[1])
+    walls = np.pad(grid.occupied, ((0, longer - rows), (0, longer - columns)), constant_values=True)
+    at_end = (points == np.floor(ends)[:, None] + 0.5).all(axis=2).any(axis=0)
+    settable = ~walls[row, column] & ~at_end
     if not settable.any():
         raise ValueError(
             "gene_lattice: no free gene; every cell of the lattice is occupied, or start or target"
@@ -67,12 +64,8 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
         left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
         index = np.lexsort((-left, (points - ends[0]) @ along))
     elif point_order == "geodesic":
-        far = np.full(2 * (longer,), np.inf)
-        start = np.floor(ends[0, ::-1]).astype(int)
-        far[:columns, :rows] = distances(
-            np.pad(grid.occupied, 1, constant_values=True), *start, STEPS
-        ).T
-        index = np.argsort(far[column, row], kind="stable")
+        far = distances(walls, *np.floor(ends[0, ::-1]).astype(int))
+        index = np.argsort(far[row, column], kind="stable")
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
     room[room < 0] = longer  # there is no occupied cell
     return Field(
@@ -84,29 +77,6 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
         np.flatnonzero(settable[index]),
         *map(tuple, ends.tolist()),
     )
-
-
-@compiled
-def distances(walls: np.ndarray, row: int, column: int, steps: np.ndarray) -> np.ndarray:
-    """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
-    neighbours, infinite where there is no path.
-
-    walls: the cells with a frame of occupied cells around them.
-    """
-    far = np.full(walls.shape, np.inf)
-    far[row + 1, column + 1] = 0.0
-    heap = [(0.0, row + 1, column + 1)]
-    while len(heap) > 0:
-        length, row, column = heapq.heappop(heap)
-        if length > far[row, column]:
-            continue
-        for k in range(len(steps)):
-            up, right = row + steps[k, 0], column + steps[k, 1]
-            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
-            if not walls[up, right] and ahead < far[up, right]:
-                far[up, right] = ahead
-                heapq.heappush(heap, (ahead, up, right))
-    return far[1:-1, 1:-1]
 
 
 def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
