@@ -25,6 +25,7 @@ from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings
+from bezierplan.study.alternatives import meaning
 
 HERE = Path(__file__).parent
 MOST_NAMED = 4
@@ -78,10 +79,7 @@ def write(folder: Path) -> None:
         "worth": reader.records(reader.read(content.OUTCOME / outcome.WORTH)),
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.listed([], [*names.NAMES])],
-        "readings": {
-            file.name.removesuffix("_readings.csv"): reader.records(reader.read(file))
-            for file in content.OUTCOME.glob("*_readings.csv")
-        },
+        "meaning": meaning,
         "table": table,
         "named_rows": named_rows,
         "about": content.about,

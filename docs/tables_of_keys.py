@@ -52,6 +52,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "assumptions": [
         ("The file", claims.AssumptionsFile),
         ("An assumption", claims.AssumptionEntry),
+        ("A joint reading", claims.ReadingEntry),
     ],
 }
 """File -> its tables: what stands above, and the model of a mapping or those of its kinds."""

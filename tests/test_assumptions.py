@@ -10,7 +10,7 @@ from studies import built, studies
 
 from bezierplan.geometry.region import region
 from bezierplan.running import execution
-from bezierplan.study.alternatives import concerned, with_alternative
+from bezierplan.study.alternatives import under
 from bezierplan.study.jobs import job
 
 STUDIES = studies()
@@ -48,6 +48,15 @@ def alternatives(study):
     }
 
 
+def place_of(study, assumption, method):
+    """The number of the last problem of a method, or of one on which an alternative holds."""
+    names = list(job(study, home(study, method), method, "smoke", 0).problems)
+    if own := [number for number, name in enumerate(names) if name in assumption.problems]:
+        return own[0]
+    settings = study.problems[study.experiments[home(study, method)].problems[-1]].settings
+    return 0 if assumption.setting in settings else -1
+
+
 def home(study, method):
     """The first experiment that has a method."""
     return next(
@@ -66,36 +75,24 @@ def found_in_force(key, method, place):
 )
 def test_alternative_changes_what_a_run_finds(key, name):
     """Of one method at least: a choice about chaotic sequences does not concern a swarm without
-    one. On the last problem, or on the first if the last has a value of its own in force.
+    one.
     """
     study = STUDIES[key]
-    if under := UNDER.get((key, name)):
+    if others := UNDER.get((key, name)):
         methods = {
             method: study.methods[method].but(settings=study.methods[method].settings | settings)
-            for method, settings in under.items()
+            for method, settings in others.items()
         }
         study = study.but(methods=study.methods | methods)
-    changed = with_alternative(study, *alternatives(study)[name])
+    assumption, value = alternatives(study)[name]
+    changed = under(study, {assumption.id: value})
+    places = {method: place_of(study, assumption, method) for method in study.concerned(assumption)}
     assert any(
         found(changed, home(study, method), method, place)
         != (
             found(study, home(study, method), method, place)
-            if under
+            if others
             else found_in_force(key, method, place)
         )
-        for place in _places(study, name)
-        for method in concerned(study, alternatives(study)[name][0])
+        for method, place in places.items()
     )
-
-
-def _places(study, name):
-    """Places of the problems on which an alternative is tried."""
-    assumption, value = alternatives(study)[name]
-    setting = assumption.setting
-    own = {
-        study.problems[list(study.experiments[home(study, method)].problems)[-1]].settings.get(
-            setting
-        )
-        for method in concerned(study, alternatives(study)[name][0])
-    }
-    return [0] if value in own else [-1]

@@ -144,7 +144,7 @@ def models_in(annotation):
     [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)],
 )
 def test_no_key_of_a_file_is_unused(name, model):
-    used = {name, "votes", "pairs", "reading_repeats"}.union(
+    used = {name, "fitted", "readings", *keys(study_claims.ReadingEntry)}.union(
         *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in KEYS)
     )
     assert keys_of(model) - used == set()

@@ -154,14 +154,13 @@ def test_profile_keeps_what_the_default_one_says(name):
 
 @pytest.mark.parametrize("name", ["slurm", "cluster"])
 def test_every_rule_is_in_a_group(name):
-    """But the readings of a study, which are minutes of work."""
     text = "".join(file.read_text() for file in sorted((ROOT / "workflow/rules").glob("*.smk")))
     rules = {
         rule
         for rule, body in re.findall(r"^rule (\w+):\n(.*?)(?=^\S|\Z)", text, flags=re.M | re.S)
         if "\n    script:" in body
     } | set(re.findall(r"^use rule \w+ as (\w+) with:", text, flags=re.M))
-    assert PROFILES[name]["groups"].keys() == rules - {"readings_of_study"}
+    assert PROFILES[name]["groups"].keys() == rules
     assert set(PROFILES[name]["groups"].values()) == PROFILES[name]["group-components"].keys()
     assert PROFILES[name]["groups"] == PROFILES["slurm"]["groups"]
 

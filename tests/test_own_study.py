@@ -88,6 +88,7 @@ tables:
 figures:
   paths: {title: One bend, columns: 1, panels: [
     {kind: paths, experiment: bends, where: {method: low}, pick: {lowest: length}}]}
+  figure_alternatives: {title: All, columns: 1, panels: [{kind: alternatives, claim: C2}]}
 """
 
 CLAIMS = """
@@ -97,7 +98,7 @@ claims:
     statement: The low bend is shorter than the high one.
     artefact: lengths
     checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length,
-              groups: [low], than: [high], direction: lower, margin: 0.01}]
+              groups: [low], than: [high], direction: lower, margin: 0.002}]
   - id: C2
     place: invented
     statement: The high bend is shorter than the low one, which is false.
@@ -109,7 +110,11 @@ claims:
 ASSUMPTIONS = """
 assumptions:
   - {id: O1, detail: How far the low bend goes, setting: bend, methods: [low],
-     alternatives: [6.0], reason: invented, source: assumed}
+     alternatives: [4.0, 5.0, 6.0], reason: invented, source: assumed}
+readings:
+  - {name: lower than high, values: {O1: 4.0}, reason: invented, claims: [C1]}
+  - {name: as high, values: {O1: 5.0}, reason: invented, claims: [C1]}
+  - {name: higher than high, values: {O1: 6.0}, reason: invented, claims: [C1, C2]}
 """
 
 # The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than
@@ -193,6 +198,54 @@ def test_claim_that_is_false_is_contradicted_and_its_contrary_supported(results)
     claims = pd.read_csv(results / "claims.csv").set_index("id")
     assert claims.loc["C1", "verdict"] == "supported"
     assert claims.loc["C2", "verdict"] == "contradicted"
+
+
+@pytest.fixture(scope="module")
+def many(results):
+    """The results of the study at the scale at which it has readings."""
+    folder = results.parents[1] / "extended" / "bends"
+    files = ("claims.csv", "beyond/figure_alternatives.csv")
+    snakemake(results.parents[2], *(f"{folder.relative_to(results.parents[2])}/{f}" for f in files))
+    return folder
+
+
+def test_a_claim_depends_on_a_reading_that_decides_the_opposite(many):
+    claims = pd.read_csv(many / "claims.csv").set_index("id")
+    assert claims["verdict"].to_dict() == {"C1": "depends", "C2": "depends"}
+    assert claims["readings"].to_dict() == {
+        "C1": "supported under lower than high; undecided under as high; "
+        "contradicted under higher than high",
+        "C2": "supported under higher than high",
+    }
+    assert claims.loc["C1", "reason"].startswith(
+        "supported by default, contradicted under higher than high (How far the low bend goes: 6.0)"
+    )
+
+
+def test_claims_by_reading_have_a_row_for_each_check_and_reading(many):
+    rows = pd.read_csv(many / "claims_by_reading.csv")
+    assert rows["reading"].value_counts().to_dict() == {
+        "default": 2,
+        "higher than high": 2,
+        "lower than high": 1,
+        "as high": 1,
+    }
+    turned = rows.set_index(["id", "reading"]).loc[("C1", "higher than high")]
+    assert (turned["verdict_on_check"], turned["holds"]) == ("contradicted", "0 of 2")
+    assert turned["effect"] > 0
+
+
+def test_a_reading_shares_what_it_does_not_change_with_the_default(many):
+    made = {file.relative_to(many / "readings") for file in many.glob("readings/*/runs/*/*")}
+    assert {tuple(file.parts[2:]) for file in made} == {("bends", "low"), ("again", "low")}
+    assert not [*many.glob("readings/*/problems")]
+
+
+def test_alternatives_are_drawn_with_the_default_first(many):
+    frame = pd.read_csv(many / "beyond" / "figure_alternatives.csv")
+    assert frame["value"].to_list() == ["default", "6.0", "5.0", "4.0"]
+    assert frame["effect"][1:].is_monotonic_increasing
+    assert frame["mark"].to_list() == ["-", "+", "0", "-"]
 
 
 def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results):

@@ -1,328 +1,194 @@
-"""Readings of a paper: what they change, what excludes them, how they fit, and what claims make of
-them.
-"""
+"""Readings of a paper: a study under other values of its assumptions, and its claims there."""
 
-import numpy as np
+import math
+
 import pandas as pd
 import pytest
-from pivots import pivot_of
-from studies import built, studies
+from studies import studies
 
 from bezierplan.analysis.claims import by_reading
 from bezierplan.analysis.outcome import outcome
-from bezierplan.analysis.readings import fit, readings
-from bezierplan.analysis.results import Results
 from bezierplan.places import TREE
-from bezierplan.running import execution
-from bezierplan.study import jobs
+from bezierplan.study import alternatives, jobs
 
 STUDIES = studies()
-READ = [key for key, study in STUDIES.items() if study.votes]
 
 
-def job(key):
-    made = jobs.readings(STUDIES[key], "full")
-    files = {name: f"{STUDIES[key].folder}/published/{name}.csv" for name in made.tables}
-    return made, readings.quantities(made.tables, made.votes, files)
+def chunk(study, experiment, method):
+    return jobs.job(study, experiment, method, "extended", 0)
 
 
-def test_a_reading_changes_its_settings_on_its_problems_and_what_goes_along():
-    made, _ = job("meledje")
-    chunk = made.experiments["operators"].chunks["random"]
-    second = readings.under(chunk, {"M15b": 50}, made.assumptions)
-    assert second.settings == chunk.settings
+# A study under other values
+
+
+def test_a_value_changes_its_setting_on_its_problems_and_what_goes_along():
+    study = STUDIES["meledje"]
+    default = chunk(study, "operators", "random")
+    second = chunk(alternatives.under(study, {"M15b": 50}), "operators", "random")
+    assert second.settings == default.settings
     assert "generations" not in second.problems["env1_initial"]["settings"]
     changed = second.problems["env2_initial"]["settings"].items()
     assert changed >= {"generations": 50, "stall": 100, "population": 80}.items()
-    both = readings.under(chunk, {"M10": 10, "M15": 200}, made.assumptions).settings
+    both = chunk(alternatives.under(study, {"M10": 10, "M15": 200}), "operators", "random").settings
     assert (both["generations"], both["stall"]) == (200, 10)
 
 
-def test_what_was_fitted_to_has_runs_and_no_vote_and_a_number_without_n_is_of_one_run():
-    made, quantities = job("elhoseny2017")
-    assert "mga" in made.experiments["fields100"].chunks
-    voting = pd.concat([each.printed for each in quantities]).query("votes")
-    assert {*voting["method"]} == {"prm", "abc_ep", "ga"}
-    assert {*pd.concat([each.printed["n"] for each in job("song2016")[1]])} == {1}
-    assert {*pd.concat([each.printed for each in job("ma2020")[1]]).query("votes")["method"]} == {
-        "bca",
-        "bca_q",
+def test_a_problem_keeps_its_own_value_under_one_that_is_not_of_it():
+    study = STUDIES["ma2020"]
+    ants = chunk(alternatives.under(study, {"O14g": 10}), "environments", "aco_ga")
+    assert ants.settings["generations"] == 10
+    assert ants.problems["environment2"]["settings"]["generations"] == 100
+
+
+@pytest.mark.parametrize(
+    ("key", "values", "experiment", "shared"),
+    [
+        ("ma2020", {"O14h": 50}, "environments", {"aco", "asfa", "bca", "bca_q"}),
+        ("meledje", {"M15b": 50}, "heights", {"random", "ref12", "ref21", "proposed"}),
+        ("tharwat2018", {"O3b": 1.35}, "maps", set()),
+        ("tharwat2018", {"O3b": 1.35}, "obstacles", {"cpso2_singer"}),
+    ],
+)
+def test_a_study_shares_the_runs_that_its_values_do_not_change(key, values, experiment, shared):
+    study = STUDIES[key]
+    other = alternatives.under(study, values)
+    same = {
+        method
+        for method in study.experiments[experiment].methods
+        if jobs.is_shared(other, study, "extended", experiment, method)
     }
+    assert same & shared == shared & {*study.experiments[experiment].methods}
+    assert bool(same) == bool(shared)
+    assert jobs.is_shared(other, study, "extended", experiment) == bool(shared)
 
 
-# The fit
-
-
-def of_kind(printed, size, counts=False, values=None):
-    k = len(printed)
-    values = np.zeros((2, k)) if values is None else values
-    kinds = np.full(k, counts), np.zeros(k, dtype=bool)
-    return fit.Numbers(values, np.asarray(printed, float), np.full(k, 0.01), *kinds, size)
-
-
-def test_densities_are_densities_of_relative_errors_and_of_counts():
-    counts = of_kind(np.arange(101), 100, counts=True)
-    ours = fit.Moments(*(np.full(101, value) for value in (0.3, 100, 1, np.nan)))
-    assert np.exp(fit._of_counts(counts, counts.printed, ours)).sum() == pytest.approx(1)
-    errors = np.linspace(-20, 20, 400_001)
-    means = of_kind(np.full(len(errors), 10.0), 1)
-    ours = fit.Moments(10 * (1 - errors), *(np.full(len(errors), value) for value in (1, 1, 0.25)))
-    found = np.exp(fit._of_means(means, means.printed, ours))
-    assert np.trapezoid(found, errors) == pytest.approx(1, abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("variance", "size", "units", "share", "step", "error"),
-    [
-        (0, 1, 1e9, 1, 0.6, 0.6 / np.sqrt(12)),  # of rounding, uniform
-        (4, 4, 16, 1, 1e-9, np.sqrt(4 / 4 + 4 / 16)),  # of both means
-        (4, 8, 16, 0.5, 1e-9, np.sqrt(4 / 4 + 4 / 16)),  # of the runs that count
-    ],
-)
-def test_the_error_of_a_printed_mean(variance, size, units, share, step, error, monkeypatch):
-    """In closed form: the density of Student's t at 0 is 3/8 where its scale is 1."""
-    monkeypatch.setattr(fit, "DISCREPANCY", 0.0)
-    number = of_kind([10.0], size)._replace(step=np.array([step]))
-    ours = fit.Moments(*(np.array([each]) for each in (10.0, units, share, variance)))
-    density = np.exp(fit._of_means(number, number.printed, ours))
-    assert density == pytest.approx(3 / 8 / (error / 10))
-
-
-def test_a_count_far_from_ours_has_the_density_of_any():
-    count = of_kind([100], 100, counts=True)
-    ours = fit.Moments(*(np.array([each]) for each in (0.0, 100, 1, np.nan)))
-    assert np.exp(fit._of_counts(count, count.printed, ours)) == pytest.approx(0.05 / 101, rel=1e-6)
-
-
-def test_printed_shares_vote_as_counts(tmp_path):
-    file = tmp_path / "shares.csv"
-    file.write_text("method,metric,statistic,n,unit,value\nmine,feasible,share,20,-,0.95\n")
-    value = {"metric": "feasible", "statistic": "share", "label": "free", "decimals": 2}
-    spec = pivot_of({"index": ["method"], "columns": ["value"], "values": [value]})
-    tables = {"table1": spec.but(published="shares.csv")}
-    (found,) = readings.quantities(tables, {"table1": {"feasible": {}}}, {"shares": str(file)})
-    assert found.statistic == "count"
-    assert found.printed[["value", "n", "votes"]].to_numpy().tolist() == [[19, 20, True]]
-
-
-def test_moments_are_those_of_the_chosen_units_that_have_a_value():
-    values = np.array([[1.0, 0.0], [np.nan, 1.0], [3.0, 1.0], [8.0, 1.0]])
-    numbers = of_kind([0, 0], 2, values=values)._replace(counts=np.array([False, True]))
-    found = fit.moments(numbers, np.array([[True, True, True, False], [False, True, False, False]]))
-    assert [*found.centre[0]] == [2, 2 / 3]
-    assert [*found.counted[:, 0]] == [2, 0]
-    assert found.variance[0, 0] == 2
-    assert np.isnan([found.centre[1, 0], found.variance[1, 0]]).all()
-    medians = numbers._replace(medians=np.array([True, False]))
-    assert fit.moments(medians, np.ones((1, 4), dtype=bool)).centre[0, 0] == 3
-
-
-METHODS, SIZE, STORED = ("cpso1_singer", "cpso2_singer", "cpso1_tent", "cpso2_sine"), 10, 100
-
-
-def swarms(repeats, **settings):
-    """Objectives of real runs of tharwat2018 on its three circles: (repeats, methods)."""
+def test_no_best_known_path_counts_on_another_map():
     study = STUDIES["tharwat2018"]
-    problem = {"equal": built(study, "maps", "equal")}
-    chunks = job("tharwat2018")[0].experiments["maps"].chunks
-    found = []
-    for method in METHODS:
-        chunk = chunks[method]._replace(repeats=repeats)
-        chunk = chunk._replace(settings=chunk.settings | settings)
-        found.append(execution.run_chunk(problem, chunk)[0]["objective"].to_numpy())
-    return np.column_stack(found)
+    other = alternatives.under(study, {"O3b": 1.35})
+    assert study.problems["equal"].reference
+    assert math.isnan(other.problems["equal"].reference)
+    assert other.problems["public"] == study.problems["public"]
 
 
-def chances(ours, printed, rng):
-    """p of experiments (experiments, k) under runs of ours, with errors as small as the model's."""
-    errors = fit.DISCREPANCY * rng.standard_t(fit.FREEDOM, printed.shape)
-    numbers = of_kind(printed[0], SIZE, values=ours)
-    each = (numbers._replace(printed=np.round(row, 2)) for row in printed * (1 + errors))
-    return [fit.p_of_fit([one], rng) for one in each]
+def test_the_runs_of_claims_are_those_that_their_checks_name():
+    study = STUDIES["tharwat2018"]
+    claims = [claim for claim in study.claims if claim.id in ("C21", "C28")]
+    own = alternatives.with_claims(study, claims).experiments
+    assert own["maps"].problems == ["equal"]
+    assert own["maps"].vary == {"profile": ["default"]}
+    assert {*own["maps"].methods} < {*study.experiments["maps"].methods}
+    assert own["control_points"].methods == ["cpso2_singer"]
 
 
-def test_p_is_uniform_for_experiments_of_ours_and_tells_what_it_can(monkeypatch):
-    """Ours are drawn anew for every ten experiments. A swarm without chaos prints numbers that fit;
-    one with twice the acceleration does not.
-    """
-    monkeypatch.setattr(fit, "EXPERIMENTS", 200)
-    rng = np.random.default_rng(1)
-
-    def experiments(runs):
-        return runs.reshape(-1, SIZE, len(METHODS)).mean(axis=1)
-
-    blocks = swarms([0, 10 * 2 * STORED]).reshape(10, 2 * STORED, len(METHODS))
-    true = [chances(own[:STORED], experiments(own[STORED:]), rng) for own in blocks]
-    assert np.mean(np.ravel(true) < 0.05) <= 0.12
-    assert 0.35 <= np.mean(np.ravel(true) < 0.5) <= 0.62
-    own = blocks[0, :STORED]
-    fast = chances(own, experiments(swarms([0, 200], c1=3.0, c2=3.0)), rng)
-    calm = chances(own, experiments(swarms([5000, 5200], chaotic_term="none")), rng)
-    assert np.mean(np.array(fast) < 0.05) >= 0.5
-    assert np.mean(np.array(calm) < 0.05) <= 0.2
+def test_alternatives_have_few_runs_and_none_is_excluded():
+    for key, study in STUDIES.items():
+        under = alternatives.single_alternatives(study)
+        assert next(iter(under)) == alternatives.DEFAULT
+        excluded = {each.id for each in study.assumptions if each.excluded_by}
+        assert not excluded & {name for own in under.values() for name in own.values}, key
+        few = under[alternatives.DEFAULT]
+        for name in alternatives.experiments_of_claims(few.claims):
+            made = chunk(few, name, few.experiments[name].methods[0])
+            layouts = max(place.get("layout", 0) for place in made.problems.values()) + 1
+            assert made.repeats[1] * layouts <= 100
 
 
-def test_independent_groups_are_joined_by_fisher(monkeypatch):
-    monkeypatch.setattr(fit, "_p_of_group", lambda group, rng: group)
-    assert fit.p_of_fit([0.05], None) == pytest.approx(0.05)
-    assert fit.p_of_fit([0.05, 0.05], None) == pytest.approx(0.0025 * (1 - np.log(0.0025)))
-
-
-# Which readings are excluded
-
-
-@pytest.mark.parametrize(
-    ("lengths", "least", "why"),
-    [
-        ([8.0, 9.0], 7.0, ""),
-        ([8.0, np.nan], 7.0, "the proposed method returns no path"),
-        ([8.0, 9.0], 8.6, "a printed mean lies below the exact optimum"),
-    ],
-)
-def test_what_excludes_a_reading(lengths, least, why):
-    printed = pd.DataFrame({"method": ["mine"], "value": [8.5], "n": [2], "votes": [True]})
-    printed.insert(1, "problem", "field")
-    quantity = readings.Quantity(
-        *("tried", {}, {}, "length", "mean", 2, "optimum", ["method", "problem"], printed)
-    )
-    runs = pd.DataFrame({"method": "mine", "problem": "field", "repeat": [0, 1], "length": lengths})
-    found = {"tried": Results(runs.assign(feasible=True, optimum=least), {}, pd.DataFrame())}
-    assert readings.excluded([quantity], found, "mine") == why
-    assert readings.excluded([quantity], found, None) in ("", why)
-
-
-def test_the_order_of_printed_means_beside_ours():
-    names = [f"m{number}" for number in range(6)]
-    printed = pd.DataFrame({"method": names, "value": [3, 1, 2, 6, 5, 4], "n": 2, "votes": True})
-    quantity = readings.Quantity("tried", {}, {}, "length", "mean", 2, None, ["method"], printed)
-    runs = pd.DataFrame({"method": names, "repeat": 0, "feasible": True})
-    found = Results(runs.assign(length=[3, 1, 2, 6, 5, 4]), {}, pd.DataFrame())
-    reverse = found._replace(runs=found.runs.assign(length=-found.runs["length"]))
-    assert readings.lowest_order([quantity], {"tried": found}) == pytest.approx(1)
-    assert readings.lowest_order([quantity], {"tried": reverse}) == pytest.approx(-1)
-    assert np.isnan(readings.lowest_order([quantity._replace(statistic="count")], {}))
-
-
-def test_an_excluding_sentence_saves_the_runs_and_pairs_are_tried():
-    made, _ = job("tharwat2018")
-    tried = []
-
-    class Runner:
-        assumptions = made.assumptions
-
-        def moved(self, reading):
-            return []
-
-        def chunks(self, reading):
-            tried.append(readings.name_of(reading))
-            return []
-
-    with pytest.raises(ValueError, match="No objects to concatenate"):
-        readings.of_study("walks", [], Runner(), made.pairs, None, None, None)
-    assert {"default", "O2=0.4, O3b=1.35"} < {*tried}
-    assert not {"O7=mirror", "O8=dimension"} & {*tried}
+def test_a_printed_statistic_is_of_as_many_runs_of_ours_or_its_table_says_of_which_it_is():
+    """The third rule for a default reading (docs/verdicts.in.md)."""
+    numbers = pd.read_csv(TREE / outcome.KEPT / "numbers_papers_size.csv").query("primary")
+    printed = numbers[["n_published", "n_asked"]].min(axis=1).fillna(1)
+    fewer = numbers[numbers["n_ours"] < printed]
+    for (key, table), rows in fewer.groupby(["study", "table"]):
+        note = STUDIES[key].tables[table].note or ""
+        names = [STUDIES[key].labels.get(each, each) for each in rows["method"].unique()]
+        assert [name for name in names if name not in note] == [], f"{key}: {table}: {note}"
 
 
 # Claims
 
 
-def table_of(**columns):
-    return pd.DataFrame(columns)
-
-
-CLAIMS = table_of(id=["C1"] * 2 + ["C2", "C3"], primary=[True, False, True, True])
+CLAIMS = pd.DataFrame({"id": ["C1"] * 2 + ["C2", "C3"], "primary": [True, False, True, True]})
 CLAIMS["variant"], CLAIMS["reason"] = ["", "metric=length", "", ""], "why"
 CLAIMS["verdict"] = ["supported", "undecided", "supported", "undecided"]
-KEPT = table_of(
-    reading=["default", "O1=2", "O2=3", "O3=4"],
-    meaning=["", "How fast: 2", "How far: 3", "How high: 4"],
-    excluded_by=["", "", "", "Section 1"],
-    p=[0.2, 0.3, 0.001, np.nan],
-)
-TURNED = table_of(id="C1", reading=["default", "O1=2", "O2=3", "O3=4"])
+
+
+def under(**verdicts):
+    """Verdicts on C1 by reading, as `with_dependence` takes them."""
+    return {
+        name: by_reading.ClaimTables(pd.DataFrame({"id": ["C1"], "verdict": [verdict]}), None)
+        for name, verdict in verdicts.items()
+    }
 
 
 @pytest.mark.parametrize(
-    ("verdicts", "verdict", "words", "reason"),
+    ("verdicts", "verdict", "readings", "reason"),
     [
-        (["supported", "partly", *["contradicted"] * 2], "supported", "2 of 2", "why"),
-        (["supported", "undecided", "no effect", "no effect"], "supported", "1 of 2", "why"),
         (
-            ["undecided", "contradicted", "supported", "supported"],
+            {"slow": "supported", "far": "partly"},
+            "supported",
+            "supported under slow; partly under far",
+            "why",
+        ),
+        (
+            {"slow": "undecided", "far": "undecided"},
+            "supported",
+            "undecided under slow, far",
+            "why",
+        ),
+        (
+            {"slow": "undecided", "far": "contradicted"},
             "depends",
-            "0 of 2",
-            "supported by default, contradicted with O1 = 2 (How fast: 2); why",
+            "undecided under slow; contradicted under far",
+            "supported by default, contradicted under far (How far: 3); why",
+        ),
+        (
+            {"slow": "no effect"},
+            "depends",
+            "no effect under slow",
+            "supported by default, no effect under slow (How fast: 2); why",
         ),
     ],
 )
-def test_a_claim_depends_on_a_reading_that_fits_and_decides_the_opposite(
-    verdicts, verdict, words, reason
+def test_a_claim_depends_on_a_reading_that_decides_the_opposite(
+    verdicts, verdict, readings, reason
 ):
-    found = by_reading.told(CLAIMS, KEPT, TURNED.assign(verdict=verdicts), {})
+    """One that decides nothing is told, and is no agreement."""
+    meanings = {"slow": "How fast: 2", "far": "How far: 3"}
+    found = by_reading.with_dependence(CLAIMS, under(**verdicts), meanings, {})
     assert [*found["verdict"]] == [verdict, "undecided", "supported", "undecided"]
-    assert found["readings"][0] == f"supported under {words} readings"
-    assert [*found["readings"][1:]] == ["", by_reading.BY_DEFAULT, ""]
+    assert [*found["readings"]] == [readings, "", "", ""]
     assert found["reason"][0] == reason
-
-
-def test_where_no_reading_fits_all_that_nothing_excludes_count():
-    verdicts = ["supported", "supported", "no effect", "contradicted"]
-    none_fits = KEPT.assign(p=[0.001, 0.002, 0.001, np.nan])
-    found = by_reading.told(CLAIMS, none_fits, TURNED.assign(verdict=verdicts), {})
-    assert found["verdict"][0] == "depends"
-    assert found["readings"][0] == "supported under 2 of 3 readings"
 
 
 def test_a_claim_depends_on_a_variant_with_any_other_verdict():
     claims = CLAIMS.assign(verdict=["supported", "partly", "supported", "undecided"])
-    found = by_reading.told(
-        claims, pd.DataFrame(), pd.DataFrame(), {"metric=length": "metric length"}
-    )
+    found = by_reading.with_dependence(claims, {}, {}, {"metric=length": "metric length"})
     assert [*found["verdict"]] == ["depends", "partly", "supported", "undecided"]
     assert found["reason"][0] == "supported by default, partly with metric length; why"
     assert {*found["readings"]} == {""}
 
 
-@pytest.mark.parametrize("key", READ)
-def test_the_kept_readings_are_those_of_today(key):
-    made, quantities = job(key)
-    kept = pd.read_csv(TREE / outcome.KEPT / f"{key}_readings.csv")
-    names = [readings.name_of(each) for each in readings.listed(made.assumptions, made.pairs)]
-    assert [*kept["reading"]] == names
-    assert (kept["numbers"] == sum(each.printed["votes"].sum() for each in quantities)).all()
-
-
-@pytest.mark.parametrize(
-    ("study", "claim", "hangs_on"),
-    [
-        *(("meledje", claim, "M3 = none") for claim in ("C1", "C3", "C4", "C10")),
-        *(("elhoseny2017", claim, "metric ") for claim in ("C1", "C2", "C3", "C6", "C17")),
-        *(("ma2020", claim, "strong") for claim in ("C4", "C24")),
-        ("ma2020", "C6", "strict corners"),
-    ],
-)
-def test_what_is_known_to_turn_does(study, claim, hangs_on):
-    kept = (
-        pd.read_csv(TREE / outcome.KEPT / "claims.csv").query("primary").set_index(["study", "id"])
+def test_a_claim_of_two_checks_has_the_verdict_on_each(tmp_path):
+    """One of both holds; of each the comparison that speaks most against the claim is named, also
+    from files in which all marks are 0.
+    """
+    study = STUDIES["ma2020"]
+    claim = next(claim for claim in study.claims if claim.id == "C24")
+    checks = pd.DataFrame(
+        {"check": [1, 1, 2], "mark": ["+", "-", "+"], "effect": [1.0, -2.0, 3.0]}
+    ).assign(study="ma2020", id="C24", variant="", primary=True)
+    checks["mark_family"] = checks["mark"]
+    judged = pd.DataFrame({"id": ["C24"], "variant": "", "primary": True, "verdict": "partly"})
+    checks.assign(mark="0", mark_family="0").to_csv(tmp_path / "checks.csv")
+    read = by_reading.read_checks(tmp_path / "checks.csv").assign(variant="")
+    rows = by_reading.by_check(
+        [claim],
+        {
+            by_reading.DEFAULT: by_reading.ClaimTables(judged, checks),
+            "zero": by_reading.ClaimTables(judged, read),
+        },
     )
-    assert kept.loc[(study, claim), "verdict"] == "depends"
-    assert hangs_on in kept.loc[(study, claim), "reason"]
-
-
-def test_the_order_of_chaotic_maps_is_reversed_with_an_inertia_of_1_alone():
-    kept = pd.read_csv(TREE / outcome.KEPT / "tharwat2018_readings.csv").set_index("reading")
-    assert kept.loc["default", "order"] < -0.5 < 0 < kept.loc["O2=0.4, O3b=1.35", "order"]
-    assert (kept.loc[["default", "O2=0.4, O3b=1.35"], "p"] >= readings.LEAST_P).all()
-
-
-@pytest.mark.parametrize(
-    ("study", "reading", "why"),
-    [
-        ("meledje", "M19=closed", "a printed mean lies below the exact optimum"),
-        ("elhoseny2017", "O1=0.1", "the proposed method returns no path"),
-    ],
-)
-def test_what_is_known_to_be_excluded_is(study, reading, why):
-    kept = pd.read_csv(TREE / outcome.KEPT / f"{study}_readings.csv").set_index("reading")
-    assert kept.loc[reading, "excluded_by"] == why
-    assert kept["excluded_by"].isna()["default"]
+    assert rows["reading"].to_list() == ["default"] * 2 + ["zero"] * 2
+    assert rows["verdict_on_check"].to_list() == ["partly", "supported", "no effect", "no effect"]
+    assert rows["holds"].to_list() == ["1 of 2", "1 of 1", "0 of 2", "0 of 1"]
+    assert rows["effect"].to_list() == [-2.0, 3.0, 1.0, 3.0]

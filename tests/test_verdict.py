@@ -26,9 +26,7 @@ def kept():
         name: pd.read_csv(KEPT / file) for name, file in files.items() if (KEPT / file).exists()
     }
     audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
-    tables["audit"] = pd.concat(audits)
-    files = KEPT.glob(f"*_{outcome.READINGS[0]}")
-    return tables | {"readings": pd.concat(map(pd.read_csv, files))}
+    return tables | {"audit": pd.concat(audits)}
 
 
 @pytest.mark.parametrize("study", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])

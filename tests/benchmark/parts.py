@@ -71,7 +71,6 @@ def _run(job: Any, study: str, *outputs: str) -> None:
         ],
         sources=job.sources,
         summary=[SMOKE / f"{name}.csv" for name in ("numbers", "claims", "baseline_comparison")],
-        readings=[],
         verified=SMOKE / "verified.json",
     )
     with tempfile.TemporaryDirectory() as folder:

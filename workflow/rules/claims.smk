@@ -1,13 +1,11 @@
-# Claims with their verdicts, the audit of the paper's own numbers, and which verdicts depend on
-# which reading.
+# Claims with their verdicts, also under readings, and the audit of the paper's own numbers.
 
 
 rule claims:
     input:
         unpack(results(of(jobs.claims))),
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, {wildcards.study}, "readings", "claims_by_reading"
-        ),
+        readings=of_readings("claims.csv"),
+        checks=of_readings("claim_checks.csv"),
         sources=sources(of(jobs.claims)),
     output:
         claims=report(
@@ -17,10 +15,13 @@ rule claims:
             caption="../report/claims.rst",
         ),
         checks=f"{RESULTS}/claim_checks.csv",
+        by_reading=f"{RESULTS}/claims_by_reading.csv",
     log:
         f"{RESULTS}/logs/claims.log",
     benchmark:
         f"{RESULTS}/logs/claims.tsv"
+    wildcard_constraints:
+        study=one_of(STUDIES),
     priority: 3
     conda:
         "../envs/bezierplan.yaml"
@@ -31,6 +32,18 @@ rule claims:
         **params(jobs.claims),
     script:
         "../scripts/job.py"
+
+
+# The claims that are judged under a reading, or drawn under each alternative.
+use rule claims as claims_of_reading with:
+    input:
+        unpack(results(of(jobs.claims))),
+        sources=sources(of(jobs.claims)),
+    output:
+        claims=f"{RESULTS}/claims.csv",
+        checks=f"{RESULTS}/claim_checks.csv",
+    wildcard_constraints:
+        study=f"(?:{one_of(STUDIES)}){BELOW}",
 
 
 rule audit:
@@ -50,29 +63,5 @@ rule audit:
         "../envs/bezierplan.yaml"
     params:
         **params(jobs.audit),
-    script:
-        "../scripts/job.py"
-
-
-# How well each reading of a paper fits its printed numbers, and what it makes of its claims.
-rule readings_of_study:
-    input:
-        unpack(results(of(jobs.readings))),
-        sources=sources(of(jobs.readings)),
-    output:
-        readings=f"{RESULTS}/readings.csv",
-        claims=f"{RESULTS}/claims_by_reading.csv",
-        numbers=f"{RESULTS}/numbers_by_reading.csv",
-    log:
-        f"{RESULTS}/logs/readings.log",
-    wildcard_constraints:
-        study=one_of(READ),
-    conda:
-        "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(2000),
-        runtime=more(60),
-    params:
-        **params(jobs.readings),
     script:
         "../scripts/job.py"

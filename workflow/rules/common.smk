@@ -20,7 +20,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
-from bezierplan.study import experiments, jobs, page, reading
+from bezierplan.study import alternatives, experiments, jobs, page, reading
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -70,6 +70,43 @@ RESULTS = "results/{scale}/{study}"
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 
 
+UNDER = {
+    "readings": alternatives.joint_readings,
+    "alternatives": alternatives.single_alternatives,
+}
+"""Folder in the results of a study -> the studies under other values, whose results it has."""
+
+
+@cache
+def under(key, folder):
+    """The studies in a folder of a study, each by the place of its results."""
+    return {f"{key}/{folder}/{name}": own for name, own in UNDER[folder](STUDIES[key]).items()}
+
+
+def study_of(place):
+    """The study whose results are at a place."""
+    key, *below = place.split("/")
+    return under(key, below[0])[place] if below else STUDIES[key]
+
+
+@cache
+def home(scale, study, experiment, method=""):
+    """Where the problems of an experiment are, or the runs of a method, for the study at a place.
+    What a reading does not change, it shares with the study; what an alternative does not, with the
+    default among the alternatives, which has as few runs.
+    """
+    key, *below = study.split("/")
+    if not below or study == (default := DEFAULTS[below[0]].format(key)):
+        return study
+    made = jobs.is_shared(study_of(study), study_of(default), scale, experiment, method)
+    return default if made else study
+
+
+DEFAULTS = {"readings": "{}", "alternatives": f"{{}}/alternatives/{alternatives.DEFAULT}"}
+BELOW = "(?:/(?:" + "|".join(UNDER) + ")/[^/]+)"
+"""Pattern of a place below that of a study."""
+
+
 def one_of(names):
     """Pattern of names; without names, one that never matches."""
     return "|".join(map(re.escape, sorted(set(names)))) or "(?!)"
@@ -80,7 +117,10 @@ def studies_with(files):
     table in one study may be another kind in another.
     """
     return (
-        "|".join(f"{re.escape(key)}(?=/(?:{one_of(names)})[./])" for key, names in files.items())
+        "|".join(
+            f"{re.escape(key)}(?:{BELOW})?(?=/(?:{one_of(names)})[./])"
+            for key, names in files.items()
+        )
         or "(?!)"
     )
 
@@ -127,7 +167,7 @@ DRAWN = {key: in_trees(study.figures) for key, study in STUDIES.items()}
 
 wildcard_constraints:
     scale=one_of(experiments.SCALES),
-    study=one_of(STUDIES),
+    study=f"(?:{one_of(STUDIES)})(?:{BELOW})?",
     experiment=one_of(name for study in STUDIES.values() for name in study.experiments),
     method=one_of(name for study in STUDIES.values() for name in study.methods),
     chunk="[0-9]+",
@@ -147,7 +187,7 @@ def made(make, more, wildcards):
     names = dict(wildcards)
     names.pop("tree", None)
     study = names.pop("study", None)
-    return make(STUDIES[study] if study else STUDIES, **names, **dict(more))
+    return make(study_of(study) if study else STUDIES, **names, **dict(more))
 
 
 def of(make, **more):
@@ -173,19 +213,32 @@ def results(job, *kinds):
     return lambda wildcards: {kind: files_read(job, kind, wildcards) for kind in kinds or KINDS}
 
 
+def problems_of(wildcards):
+    """The file of the problems of runs."""
+    own = home(wildcards.scale, wildcards.study, wildcards.experiment)
+    return KINDS["problems"].format(
+        scale=wildcards.scale, study=own, experiment=wildcards.experiment
+    )
+
+
 def files_read(job, kind, wildcards):
     """Those of one kind."""
     found = []
     for name, methods in job(wildcards).shows.items():
         study, _, experiment = name.rpartition("/")
         study = study or wildcards.study
-        if kind == "traces" and not STUDIES[study].moves(experiment):
+        if kind == "traces" and not study_of(study).moves(experiment):
             continue
-        place = {"scale": wildcards.scale, "study": study, "experiment": experiment}
+        place = {"scale": wildcards.scale, "experiment": experiment}
         chunks = [(method, n) for method in methods for n in range(methods[method])]
         # Problems have no methods.
         of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
-        found += [KINDS[kind].format(**place, method=method, chunk=n) for method, n in of_runs]
+        found += [
+            KINDS[kind].format(
+                **place, study=home(study=study, method=method, **place), method=method, chunk=n
+            )
+            for method, n in of_runs
+        ]
     return [*dict.fromkeys(found)]
 
 
@@ -211,26 +264,24 @@ def caption(wildcards, output):
 
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
-READ = [key for key, study in STUDIES.items() if study.votes]
+READ = [key for key, study in STUDIES.items() if study.readings]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def of_readings(scale, studies, *names):
-    """Files of the readings of some studies, which take minutes: at scale extended alone."""
-    return [
-        f"results/{scale}/{key}/{name}.csv"
-        for key in READ
-        if scale == "extended" and key in studies
-        for name in names
+def of_readings(file):
+    """A file of each joint reading of a study, at the scale at which claims are judged so."""
+    return lambda wildcards: [
+        f"results/{wildcards.scale}/{place}/{file}"
+        for place in under(wildcards.study, "readings")
+        if wildcards.scale == jobs.JUDGED_AT
     ]
 
 
-def evidence(scale, studies):
-    """What sentences take from many runs alone."""
-    return [
-        *of_readings(scale, studies, "readings"),
-        *([f"results/{scale}/worth.csv"] if scale == "extended" else []),
-    ]
+def of_alternatives(wildcards):
+    """The comparisons of claims by default and under each alternative, if a figure draws them."""
+    drawn = STUDIES[wildcards.study].figures[wildcards.figure].claims
+    places = under(wildcards.study, "alternatives") if drawn else ()
+    return [f"results/{wildcards.scale}/{place}/claim_checks.csv" for place in places]
 
 
 def shown(wildcards):
@@ -244,6 +295,7 @@ def shown(wildcards):
     named = {
         "claims": CLAIMED,
         "claim_checks": CLAIMED,
+        "claims_by_reading": CLAIMED,
         "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
     }
     summary = [f"results/{wildcards.scale}/wholes.csv"] if COMPARED else []

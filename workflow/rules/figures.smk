@@ -6,6 +6,7 @@ rule figure:
     input:
         unpack(results(of(jobs.figure))),
         sources=sources(of(jobs.figure)),
+        alternatives=of_alternatives,
     output:
         svg=report(
             f"{RESULTS}/{{tree}}/{{figure}}.svg",

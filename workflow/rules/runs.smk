@@ -45,7 +45,7 @@ rule bounds:
 
 rule runs:
     input:
-        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+        problems=problems_of,
     output:
         runs=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",

@@ -70,7 +70,9 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        evidence=lambda wildcards: evidence(wildcards.scale, {wildcards.study}),
+        worth=lambda wildcards: (
+            [f"results/{wildcards.scale}/worth.csv"] if wildcards.scale == "extended" else []
+        ),
         sources=sources(of(jobs.verdict)),
     output:
         report(
@@ -104,9 +106,6 @@ rule verified:
         unpack(judged),
         shown=shown,
         summary=SUMMARY,
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, READ, "readings", "claims_by_reading", "numbers_by_reading"
-        ),
     output:
         "results/{scale}/verified.json",
     log:

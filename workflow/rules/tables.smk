@@ -5,9 +5,6 @@
 rule table:
     input:
         unpack(results(of(jobs.table_of_runs))),
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, {wildcards.study}, "numbers_by_reading"
-        ),
         sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(
@@ -41,9 +38,6 @@ rule table:
 use rule table as unprinted_table with:
     input:
         unpack(results(of(jobs.table_of_runs))),
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, {wildcards.study}, "numbers_by_reading"
-        ),
         sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(

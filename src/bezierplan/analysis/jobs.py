@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.material import Material, StudyForClaims
-from bezierplan.analysis.readings.assumptions import Alternatives, Reading, ReadingRuns
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.running.chunk import Chunk
@@ -165,15 +164,14 @@ class TableOfRuns(Job):
     baselines: list[str]
     reconstructed: bool
     """Whether a map that it shows is not printed."""
-    votes: dict[str, dict] | None
-    """By metric, the numbers to which nothing was fitted; None if that are all."""
+    fitted: dict[str, dict]
+    """By metric, the numbers to which something was fitted."""
     paired: bool
     """Whether runs with equal repeat numbers start alike."""
     repeats: int
 
     def run(self, input_files, output_files):
         """Make the table and its comparison."""
-        import pandas as pd
 
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.numbers import comparison, tables, wholes
@@ -184,7 +182,6 @@ class TableOfRuns(Job):
         runs = results.read(files, self.repeats, experiment)
         file = input_files.sources[0] if self.sources else None
         published = comparison.read_published(file, self.spec)
-        other_maps = [pd.read_csv(each) for each in input_files.readings]
         compared = comparison.compare(
             runs,
             self.spec,
@@ -193,8 +190,7 @@ class TableOfRuns(Job):
             self.baselines,
             self.name,
             self.reconstructed,
-            self.votes,
-            *other_maps,
+            self.fitted,
         )
         table = tables.pivot(runs, self.spec, self.labels, published)
         table.to_csv(output_files.table, lineterminator="\n")
@@ -232,6 +228,8 @@ class Claims(Job):
     study: StudyForClaims
     repeats: dict[str, int]
     """By experiment, the repeats that are judged."""
+    readings: dict[str, str]
+    """By name, what each joint reading changes, in words; in the order of their files."""
 
     def modules(self):
         """Kinds of check as well."""
@@ -239,7 +237,7 @@ class Claims(Job):
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
     def run(self, input_files, output_files):
-        """Judge the claims."""
+        """Judge the claims, and say which verdicts depend on a reading or a variant."""
         import pandas as pd
 
         from bezierplan.analysis import results, study_code
@@ -253,59 +251,21 @@ class Claims(Job):
             study_code.functions(self.code),
         )
         judged, checks = judge.judge(material)
-        read = [pd.read_csv(file) for file in input_files.readings] or [pd.DataFrame()] * 2
-        names = sentences.variants_named(self.study.claims, self.study.labels)
-        self.write(by_reading.told(judged, *read, names), output_files.claims)
         self.write(checks, output_files.checks)
-
-
-@dataclass(frozen=True)
-class Readings(Job):
-    """The readings of a study, how well they fit, and what they make of its claims."""
-
-    study: str
-    tables: dict[str, Pivot]
-    votes: dict[str, dict[str, dict]]
-    """By table and metric, the printed numbers that vote: column -> value or list of values."""
-    assumptions: list[Alternatives]
-    pairs: list[Reading]
-    experiments: dict[str, ReadingRuns]
-    proposed: str | None
-    folder: str
-    claims: Claims
-
-    def modules(self):
-        """Planners as well, and what judges claims."""
-        chunks = [chunk for each in self.experiments.values() for chunk in each.chunks.values()]
-        planners = [module_of(chunk.planner) for chunk in chunks]
-        return [*self.code, *planners, *self.claims.modules()]
-
-    def run(self, input_files, output_files):
-        """Judge the readings."""
-        from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.claims import by_reading
-        from bezierplan.analysis.numbers import comparison
-        from bezierplan.analysis.readings import readings
-        from bezierplan.running import inputs
-
-        functions, files = study_code.functions(self.code), inputs.by_table(input_files.sources)
-        published = results.published_tables(input_files.sources)
-        covered = by_reading.covered(self.claims.study.claims, self.experiments)
-        study = self.claims.study._replace(claims=covered)
-        found = readings.read_problems(inputs.experiments(self.shows, input_files))
-        made = readings.of_study(
-            self.study,
-            readings.quantities(self.tables, self.votes, files),
-            readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {}),
-            self.pairs,
-            self.proposed,
-            lambda found, among: by_reading.judged(
-                Material(study, found, published, functions, among)
-            ),
-            lambda found: comparison.of_tables(found, self.tables, files, self.study),
-        )
-        for table, file in zip(made, output_files, strict=True):
-            self.write(table, file)
+        if not hasattr(output_files, "by_reading"):  # the claims of a reading
+            self.write(judged, output_files.claims)
+            return
+        under = {
+            name: by_reading.ClaimTables(pd.read_csv(claims), by_reading.read_checks(own))
+            for name, claims, own in zip(
+                self.readings, input_files.readings, input_files.checks, strict=True
+            )
+        }
+        names = sentences.variants_named(self.study.claims, self.study.labels)
+        told = by_reading.with_dependence(judged, under, self.readings, names)
+        self.write(told, output_files.claims)
+        default = {by_reading.DEFAULT: by_reading.ClaimTables(judged, checks)}
+        self.write(by_reading.by_check(self.study.claims, default | under), output_files.by_reading)
 
 
 @dataclass(frozen=True)
@@ -396,7 +356,7 @@ class VerdictText(Job):
 
         tables = [pd.read_csv(file) for file in input_files.summary]
         files = {self.study: (input_files.sources[0], self.labels)}
-        texts = summary.verdicts(*tables, files, [input_files.audit], list(input_files.evidence))
+        texts = summary.verdicts(*tables, files, [input_files.audit], list(input_files.worth))
         Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 
 

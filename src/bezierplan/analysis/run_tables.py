@@ -18,8 +18,10 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     """
     tables: dict[str, list[Path]] = {}
     for file in chunk_files(folder):
-        study, _, experiment, method, _ = file.parts[-5:]
-        tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
+        *_, folder, reading, _, experiment, method, _ = file.parts
+        # A study under a reading has a folder below the study's own.
+        study = file.parts[-7:-4] if folder in ("readings", "alternatives") else [reading]
+        tables.setdefault("/".join([*study, experiment, method]), []).append(file)
     if not tables:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"

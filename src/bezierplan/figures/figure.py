@@ -76,6 +76,11 @@ class Figure(Model):
         return sorted({panel.experiment for panel in self.panels if panel.rerun})
 
     @property
+    def claims(self) -> list[str]:
+        """Ids of the claims that it draws under all alternatives."""
+        return sorted({claim for panel in self.panels if (claim := getattr(panel, "claim", None))})
+
+    @property
     def code(self) -> list[str]:
         """Parts of a study's code that it needs."""
         own = any(panel.kind == "own" for panel in self.panels)

@@ -72,6 +72,8 @@ class FigureFiles(Job):
     """That of lengths."""
     folder: str
     """That of the study, with its maps."""
+    alternatives: list[dict[str, str]]
+    """What each single alternative is, in the order of its files: assumption, detail, value."""
 
     def modules(self):
         """Kinds of panel and workspace, and planners that run again."""
@@ -86,6 +88,7 @@ class FigureFiles(Job):
     def run(self, input_files, output_files):
         """Draw the figure from its data, which are first written and read back."""
         from bezierplan.analysis import results, study_code
+        from bezierplan.analysis.claims import by_reading
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
         from bezierplan.running import inputs
@@ -112,7 +115,9 @@ class FigureFiles(Job):
             problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout, places
         )
         functions = study_code.functions(self.code)
-        sources = Sources(experiments, workspaces, functions, published, self.study, places)
+        checks = [by_reading.read_checks(file) for file in input_files.alternatives]
+        under = [*zip(self.alternatives, checks, strict=True)]
+        sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width

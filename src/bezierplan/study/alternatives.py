@@ -1,33 +1,31 @@
-"""What a paper leaves open, and which methods it concerns."""
+"""What a paper leaves open: a study under other values of its assumptions is a study again, so that
+all jobs can be made of it.
+"""
 
 import itertools
+import math
+import re
 from collections.abc import Iterable
 from typing import Any
 
+from bezierplan.analysis import metrics
+from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.readings import assumptions as plain
+from bezierplan.analysis.claims.variants import in_variant, variants, with_work
+from bezierplan.figures.panels.alternatives import FEW
 from bezierplan.schema.model import one_or_list
-from bezierplan.study.claims import AssumptionEntry
+from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
+from bezierplan.study.experiments import Experiment
 
-
-def concerned(study: Study, assumption: AssumptionEntry) -> list[str]:
-    """Methods whose setting an assumption governs, except baselines and variants; only those that
-    it names, if any.
-    """
-    of = assumption.methods or [
-        name
-        for name, method in study.methods.items()
-        if name not in study.baselines and not method.variant_of
-    ]
-    return [method for method in of if assumption.setting in study.resolved(method)]
+DEFAULT = "default"
 
 
 def default_of(study: Study, assumption: AssumptionEntry) -> Any:
-    """The value that runs use where an assumption leaves it to a setting: one for the methods
-    without a value of their own, or each of those that it names.
+    """Return the value that runs use where an assumption leaves it to a setting: one for the
+    methods without a value of their own, or each of those that it names.
     """
-    setting, methods = assumption.setting, concerned(study, assumption)
+    setting, methods = assumption.setting, study.concerned(assumption)
     if setting is None:
         return assumption.default
     used = {}
@@ -40,41 +38,164 @@ def default_of(study: Study, assumption: AssumptionEntry) -> Any:
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
-def with_alternative(study: Study, assumption: AssumptionEntry, value: Any) -> Study:
-    """The study under one alternative of a setting."""
-    methods = dict(study.methods)
-    for name in concerned(study, assumption):
-        more = {assumption.setting: value} | assumption.along.get(name, {})
-        methods[name] = methods[name].but(settings=methods[name].settings | more)
-    return study.but(methods=methods)
+def under(study: Study, values: dict[str, Any]) -> Study:
+    """Return the study with other values of some assumptions, by id. On a map that they change, no
+    best known path counts.
+    """
+    workspaces, problems = dict(study.workspaces), dict(study.problems)
+    for assumption in study.assumptions:
+        if assumption.id in values:
+            for name, key in assumption.workspace.items():
+                plain = workspaces[name].plain() | {key: values[assumption.id]}
+                workspaces[name] = type(workspaces[name]).model_validate(plain)
+    for name, problem in study.problems.items():
+        home = problem.workspace
+        if problem.reference and workspaces[home] is not study.workspaces[home]:
+            problems[name] = problem.but(reference=math.nan)
+    return study.but(values=values, workspaces=workspaces, problems=problems)
 
 
-def experiments_of_claims(claims: list[Claim]) -> list[str]:
-    """Names of the experiments whose runs decide claims, once each; variants may name more."""
+def meaning(study: Study, values: dict[str, Any]) -> str:
+    """Return what some values of assumptions change, in words."""
+    details = {each.id: each.detail for each in study.assumptions}
+    return "; ".join(f"{details[name]}: {value}" for name, value in values.items())
+
+
+# --------------------------------------------------------------------------------------------------
+# Claims under readings
+
+
+def is_judged(claim: Claim) -> bool:
+    """Return whether a reading can turn a claim: its primary checks rest on runs, not on times."""
+    primary = [with_work(check)[0] for check in claim.checks if check.primary]
+    return all(check.experiments and not check.timed for check in primary)
+
+
+def claims_of(study: Study, reading: ReadingEntry) -> list[Claim]:
+    """Return the claims that are judged under a reading."""
+    return [
+        claim
+        for claim in study.claims
+        if (claim.id in reading.claims if reading.claims else claim.main) and is_judged(claim)
+    ]
+
+
+def joint_readings(study: Study) -> dict[str, Study]:
+    """Return the study under each joint reading, with the claims that are judged under it, by the
+    name of the folder of its results.
+    """
+    return {
+        each.folder: with_claims(under(study, each.values), claims_of(study, each))
+        for each in study.readings
+    }
+
+
+def single_alternatives(study: Study) -> dict[str, Study]:
+    """Return the study with the claims of which a figure draws all alternatives, by default and
+    under each alternative that no sentence excludes and that changes some of their runs, with few
+    runs, by the name of the folder of its results; nothing without such a figure.
+    """
+    drawn = {claim for figure in study.figures.values() for claim in figure.claims}
+    claims = [claim for claim in study.claims if claim.id in drawn]
+    if not claims:
+        return {}
+    few = with_few_runs(with_claims(study, claims))
+    contents = [few.experiments[name] for name in experiments_of_claims(few.claims)]
+    methods = {method for content in contents for method in content.methods}
+    homes = {few.problems[name].workspace for content in contents for name in content.problems}
+    return {DEFAULT: few} | {
+        folder_of(each.id, value): under(few, {each.id: value})
+        for each in study.assumptions
+        if methods.intersection(study.concerned(each)) or homes.intersection(each.workspace)
+        if not each.excluded_by
+        for value in each.alternatives
+    }
+
+
+def folder_of(identity: str, value: Any) -> str:
+    """Return the name of the folder of the results under an alternative."""
+    return re.sub(r"[^\w.+-]", "_", f"{identity}_{value}")
+
+
+def with_claims(study: Study, claims: list[Claim]) -> Study:
+    """Return the study with some claims alone, of which it has the primary checks in the primary
+    variant, and with no other runs than these checks name.
+    """
+    claims = [
+        claim.in_primary_variant().but(checks=[check for check in claim.checks if check.primary])
+        for claim in claims
+    ]
+    experiments = dict(study.experiments)
+    checks = [check for claim in claims for check in in_variant(claim.checks, *variants(claim) * 2)]
+    for name in experiments_of_claims(claims):
+        naming = [check for check in checks if name in check.experiments]
+        experiments[name] = _with_checks(study, experiments[name], naming)
+    return study.but(claims=claims, experiments=experiments)
+
+
+def _with_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) -> Experiment:
+    """Return an experiment with what checks name of its problems, methods and varied values."""
+
+    def is_named(**columns: Any) -> bool:
+        wheres = [getattr(check, "where", {}) for check in checks]
+        return any(
+            all(value in one_or_list(where.get(name, value)) for name, value in columns.items())
+            for where in wheres
+        )
+
+    def is_compared(method: str) -> bool:
+        return any(
+            check.cells != "method"
+            or "rest" in check.groups_named
+            or metrics.METRICS[check.metric].among_rows
+            or method in check.groups_named
+            for check in checks
+        )
+
+    problems = [
+        name
+        for name in content.problems
+        if is_named(problem=name, workspace=study.problems[name].workspace)
+    ]
+    return content.but(
+        problems=problems or content.problems,  # some checks name those of single layouts
+        methods=[name for name in content.methods if is_named(method=name) and is_compared(name)],
+        vary={
+            name: [value for value in values if is_named(**{name: value})]
+            for name, values in content.vary.items()
+        },
+    )
+
+
+def with_few_runs(study: Study) -> Study:
+    """Return the study with `FEW` runs of each method under each condition, or in each field that
+    is drawn at random, at most.
+    """
+    problems = {
+        name: problem.but(layouts=_at_most(problem.layouts, FEW)) if problem.layouts else problem
+        for name, problem in study.problems.items()
+    }
+    experiments = {}
+    for name, content in study.experiments.items():
+        fields = [problems[each].layouts for each in content.problems if problems[each].layouts]
+        layouts = max((max(each.values()) for each in fields), default=1)
+        most = max(1, FEW // layouts)
+        experiments[name] = content.but(
+            repeats=_at_most(content.repeats, most), chunk=_at_most(content.chunk, most), fewer={}
+        )
+    return study.but(problems=problems, experiments=experiments)
+
+
+def _at_most(numbers: dict[str, int], most: int) -> dict[str, int]:
+    return {scale: min(number, most) for scale, number in numbers.items()}
+
+
+def experiments_of_claims(claims: Iterable[Claim]) -> list[str]:
+    """Return the names of the experiments whose runs decide claims, once each; variants may name
+    more.
+    """
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(
         one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])
     )
     return list(dict.fromkeys(named))
-
-
-def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Alternatives]:
-    """What the paper leaves open for some methods, for `analysis.readings`."""
-    chosen = []
-    for assumption in study.assumptions:
-        concern = [name for name in concerned(study, assumption) if name in methods]
-        along = {name: assumption.along.get(name, {}) for name in concern if assumption.setting}
-        if assumption.alternatives and (along or assumption.workspace):
-            chosen.append(
-                plain.Alternatives(
-                    assumption.id,
-                    assumption.detail,
-                    assumption.alternatives,
-                    assumption.setting,
-                    along,
-                    assumption.problems,
-                    assumption.workspace,
-                    assumption.excluded_by or "",
-                )
-            )
-    return chosen

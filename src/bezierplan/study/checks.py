@@ -4,6 +4,7 @@ free places, matching published numbers. Every fault is one line, and all are fo
 
 import difflib
 import inspect
+import itertools
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -26,11 +27,11 @@ from bezierplan.running import columns, problems
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
-from bezierplan.schema.model import Model, named, one_or_list, parsed
+from bezierplan.schema.model import Model, identity, named, one_or_list, parsed
 from bezierplan.schema.words import told
 from bezierplan.study import published
-from bezierplan.study.alternatives import concerned, with_alternative
-from bezierplan.study.claims import AssumptionEntry
+from bezierplan.study.alternatives import is_judged, under
+from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
 from bezierplan.study.design import Design, design, together
 from bezierplan.study.experiments import Experiment, Method, ProblemEntry, descriptions
@@ -76,6 +77,7 @@ class Checks:
             "compared": study.with_published(),
             "artefact": {**study.tables, **study.figures},
             "printed table": [Path(file).stem for file in study.published_files()],
+            "claim": [claim.id for claim in study.claims],
         }
 
     @contextmanager
@@ -133,29 +135,22 @@ class Checks:
             self.prints()
         with self.at(relative(study.folder / "layout.yaml")):
             check_all(study.layout, {**study.tables, **study.figures}, "layout")
-        for section, entries, work in (
-            ("claims", study.claims, self.claim),
-            ("assumptions", study.assumptions, self.assumption),
+        for file, section, entries, work in (
+            ("claims", "claims", [(e.id, e) for e in study.claims], self.claim),
+            ("assumptions", "assumptions", [(e.id, e) for e in study.assumptions], self.assumption),
+            ("assumptions", "readings", [(e.folder, e) for e in study.readings], self.reading),
         ):
-            with self.at(relative(study.folder / f"{section}.yaml")):
-                self.each(section, {entry.id: entry for entry in entries}, work)
+            with self.at(relative(study.folder / f"{file}.yaml")):
                 # Results are looked up by it.
-                ids = [entry.id for entry in entries]
-                for identity in ids:
-                    if ids.count(identity) > 1:
-                        raise Fault(f"{section}: {identity}: another one has this id already")
-        with self.at(relative(study.folder / "assumptions.yaml"), "votes"):
-            check_all(study.votes.keys() - self.invalid, study.with_published(), "table")
-            for table, voting in study.votes.items():
-                values = study.tables[table].values
-                check_all(voting, [each.metric for each in values if each.defined], table)
-        with self.at(relative(study.folder / "assumptions.yaml"), "pairs"):
-            known = {each.id: each.alternatives for each in study.assumptions}
-            for pair in study.pairs:
-                check_all(pair.keys() - self.invalid, known, "assumption")
-                for name, value in pair.items():
-                    if value not in known.get(name, [value]):
-                        raise Fault(f"{name}: {value}: no alternative; one of {known[name]}")
+                names = [name for name, _ in entries]
+                for name in names:
+                    if names.count(name) > 1:
+                        raise Fault(f"{section}: {name}: another one has this id already")
+                self.each(section, dict(entries), work)
+        with self.at(relative(study.folder / "assumptions.yaml"), "fitted"):
+            check_all(study.fitted.keys() - self.invalid, study.with_published(), "table")
+            for table, fitted in study.fitted.items():
+                check_all(fitted, [each.metric for each in study.tables[table].values], table)
         return self.faults
 
     # experiments.yaml
@@ -200,10 +195,13 @@ class Checks:
                 check_all(settings, used, f"presets: {preset}: {value}")
 
     def settings(self, study: Study, name: str) -> None:
-        """Each setting of a method has a value that its planner accepts."""
-        interface.check_settings(
-            planner_module(study.planner(name)), study.resolved(name), "settings"
-        )
+        """Each setting of a method has a value that its planner accepts, also on a problem where
+        the study has another one.
+        """
+        own = [each.problems for each in study.assumptions if each.id in study.values]
+        for problem in {"", *itertools.chain.from_iterable(own)}:
+            settings = study.resolved(name) | study.changed(name, problem)
+            interface.check_settings(planner_module(study.planner(name)), settings, "settings")
 
     def workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
@@ -444,7 +442,7 @@ class Checks:
                     self.names(type(workspace).model_validate(workspace.plain() | {key: value}))
         if not assumption.setting:
             return
-        methods = concerned(study, assumption)
+        methods = study.concerned(assumption)
         if not methods and self.complete:
             used = self.known["setting"] - {assumption.setting}
             check_known(assumption.setting, used, "setting")
@@ -452,9 +450,49 @@ class Checks:
             check_known(method, methods, "with")
             check_all(settings, study.accepted(method), f"with: {method}")
         for value in assumption.alternatives:
-            changed = with_alternative(study, assumption, value)
+            changed = under(study, {identity: value})
             for method in methods:
                 with self.at("alternatives", str(value), method):
+                    self.settings(changed, method)
+
+    def reading(self, name: str, reading: ReadingEntry) -> None:
+        """Its values are alternatives that a run can have, all at once, and its claims rest on
+        runs.
+        """
+        study, settled = self.study, {}
+        known = {each.id: each for each in study.assumptions}
+        for key, value in reading.values.items():
+            if key in self.invalid:
+                continue
+            check_known(key, known, "values")
+            assumption = known[key]
+            if not (assumption.setting or assumption.workspace):
+                raise Fault(f"values: {key}: governs no setting, so that no run can have it")
+            if assumption.excluded_by:
+                raise Fault(f"values: {key}: excluded by {assumption.excluded_by}")
+            if identity(value) not in map(identity, assumption.alternatives):
+                raise Fault(
+                    f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
+                )
+            for method in study.concerned(assumption):
+                place = (method, assumption.setting, *assumption.problems)
+                if other := settled.get(place):
+                    raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
+                settled[place] = key
+        for other in study.readings:
+            if other.values == reading.values and other is not reading:
+                raise Fault(f"values: {other.name} has the same; expected one for all claims")
+        claims = {claim.id: claim for claim in study.claims}
+        for claim in set(reading.claims) - self.invalid:
+            check_known(claim, claims, "claims")
+            if not is_judged(claims[claim]):
+                raise Fault(
+                    f"claims: {claim}: rests on times or on no runs, so nothing can turn it"
+                )
+        if self.complete and not self.invalid:
+            changed = under(study, reading.values)
+            for method, *_ in settled:
+                with self.at("values", method):
                     self.settings(changed, method)
 
 

@@ -5,13 +5,13 @@ A claim is defined next to the code that judges it (`analysis.claims.claim`), an
 each kind of check.
 """
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.claim import Claim, ClaimId
 from bezierplan.schema.model import (
-    Count,
     Line,
     Metric,
     Model,
@@ -58,8 +58,8 @@ class AssumptionEntry(Model):
     )
     excluded_by: Line = Field(
         None,
-        description="the place of the paper, in our words, that excludes the alternatives: a "
-        "reading with one is never the most likely",
+        description="the place of the paper, in our words, that excludes the alternatives, which "
+        "then are no readings",
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
     methods: listed(Annotated[Name, Names("method")]) = Field(
@@ -94,24 +94,44 @@ class AssumptionEntry(Model):
         return self
 
 
+class ReadingEntry(Model):
+    """Another program that a careful reader of the paper could have written."""
+
+    name: Annotated[
+        str,
+        matching(
+            r"[A-Za-z0-9.-]+(,? [A-Za-z0-9.-]+){0,9}",
+            "a few words of letters, digits, . and -, with single spaces between them",
+        ),
+    ] = Field(description="words that a reader of the tables understands, such as weak rivals")
+    values: dict[AssumptionId, Setting] = Field(
+        description="id of an assumption → one of its alternatives; all of them hold at once",
+        min_length=1,
+    )
+    reason: Line = Field(
+        description="why a careful reader of the paper could have written this program, one or two "
+        "lines; no printed value is a reason"
+    )
+    claims: listed(ClaimId) = Field(
+        [],
+        description="the claims that are judged under it; left out: those with `main`",
+    )
+
+    @property
+    def folder(self) -> str:
+        """The name of the folder of its results."""
+        return re.sub("[ ,]+", "_", self.name)
+
+
 class AssumptionsFile(Model):
     """The file."""
 
     assumptions: list[AssumptionEntry] = Field(description="a list of assumptions", min_length=1)
-    reading_repeats: Count = Field(
-        None,
-        description="how many runs of each method under each condition judge a reading, a whole "
-        "number; left out: five times the paper's, and at least 100; fewer where layouts are "
-        "drawn",
+    readings: list[ReadingEntry] = Field(
+        [], description="a list of joint readings, under which claims are judged at scale extended"
     )
-    pairs: list[dict[AssumptionId, Setting]] = Field(
-        [],
-        description="a list of readings with two values, for assumptions that trade off: id of an "
-        "assumption → one of its alternatives",
-    )
-    votes: dict[Name, dict[Metric, Where]] = Field(
+    fitted: dict[Name, dict[Metric, Where]] = Field(
         {},
-        description="table → metric → the printed numbers that score readings (`snakemake "
-        "readings`): column → value or list of values, {} for all; those of these tables to which "
-        "something was fitted have none, and neither agree nor disagree",
+        description="table → metric → the printed numbers to which something was fitted, so that "
+        "they confirm nothing: column → value or list of values, {} for all",
     )

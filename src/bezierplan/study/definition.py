@@ -1,6 +1,7 @@
 """A study as defined by its files."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
@@ -10,7 +11,7 @@ from bezierplan.places import relative
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.artefacts import ArtefactsFile
-from bezierplan.study.claims import AssumptionEntry
+from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.experiments import Experiments
 from bezierplan.workspaces import files
 
@@ -24,10 +25,38 @@ class Study(Experiments, ArtefactsFile):
 
     claims: Sequence[Claim] = ()
     assumptions: Sequence[AssumptionEntry] = ()
-    votes: Mapping = {}
-    pairs: Sequence = []
-    reading_repeats: int | None = None
+    readings: Sequence[ReadingEntry] = ()
+    fitted: Mapping = {}
     layout: Mapping[str, Layout] = {}
+    values: Mapping[str, Any] = {}
+    """Id of an assumption -> the value that it has instead of the default (`alternatives.under`).
+    """
+
+    def concerned(self, assumption: AssumptionEntry) -> list[str]:
+        """Return the methods whose setting an assumption governs, except baselines and variants;
+        only those that it names, if any.
+        """
+        of = assumption.methods or [
+            name
+            for name, method in self.methods.items()
+            if name not in self.baselines and not method.variant_of
+        ]
+        return [method for method in of if assumption.setting in self.accepted(method)]
+
+    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
+        """Return the settings of a method that `values` change: everywhere, or on a problem."""
+        chosen = [
+            each
+            for each in self.assumptions
+            if each.id in self.values and method in self.concerned(each)
+        ]
+        governed, settings = {each.setting for each in chosen}, {}
+        for each in chosen:
+            if problem in (each.problems or [""]):
+                along = each.along.get(method, {}).items()
+                settings |= {name: value for name, value in along if name not in governed}
+                settings[each.setting] = self.values[each.id]
+        return settings
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""

@@ -311,7 +311,7 @@ class Experiments(ExperimentsFile):
 
     def resolved(self, method: str) -> dict[str, Any]:
         """All settings of a method, by name: the study's that its planner accepts, those of its
-        planner, and its own.
+        planner, its own, and those that are changed.
         """
         accepted = self.accepted(method)
         common = {name: value for name, value in self.settings.items() if name in accepted}
@@ -319,7 +319,14 @@ class Experiments(ExperimentsFile):
             common
             | self.of_planners.get(self.methods[method].planner, {})
             | self.methods[method].settings
+            | self.changed(method)
         )
+
+    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
+        """Return the settings of a method that other values of assumptions change, which this file
+        does not know: none.
+        """
+        return {}
 
     def planner(self, method: str) -> str:
         """The planner of a method: a name, or the path of a file relative to the working folder."""

@@ -13,7 +13,6 @@ from bezierplan.analysis.jobs import (
     Bounds,
     Claims,
     Problems,
-    Readings,
     Recheck,
     Runs,
     Summary,
@@ -21,7 +20,6 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     VerdictText,
 )
-from bezierplan.analysis.readings import assumptions
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
@@ -93,7 +91,7 @@ def _problems_met(
     for name, problem in study.problems_of(experiment, scale, first).items():
         settings = {
             key: value for key, value in problem.get("settings", {}).items() if key in accepted
-        }
+        } | study.changed(method, name)
         place = {key: problem[key] for key in PLACE if key in problem}
         met[name] = place | ({"settings": settings} if settings else {})
     return met
@@ -216,7 +214,7 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
         reconstructed=study.reconstructed(spec),
-        votes=study.votes.get(spec.extends or table),
+        fitted=study.fitted.get(spec.extends or table, {}),
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
         sources=[file] if file else [],
@@ -267,6 +265,7 @@ def figure(study: Study, scale: str, figure: str) -> FigureFiles:
         },
         unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
         folder=relative(study.folder),
+        alternatives=_every_alternative(study) if spec.claims else [],
         sources=[
             *study.maps([*spec.workspaces, *problems.workspaces]),
             *(file for file in study.published_files() if spec.draws(Path(file).stem)),
@@ -274,6 +273,19 @@ def figure(study: Study, scale: str, figure: str) -> FigureFiles:
         shows=shown_by(study, figure, scale),
         code=study.code_for(*spec.code),
     )
+
+
+def _every_alternative(study: Study) -> list[dict[str, str]]:
+    """Return what the default and each single alternative is: assumption, its detail, value."""
+    details = {each.id: each.detail for each in study.assumptions}
+    default = alternatives.DEFAULT
+    rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
+    for own in alternatives.single_alternatives(study).values():
+        rows += [
+            {"assumption": name, "detail": details[name], "value": str(value)}
+            for name, value in own.values.items()
+        ]
+    return rows
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
@@ -310,7 +322,25 @@ def behind(study: Study, artefact: str, scale: str) -> str:
 
 
 # --------------------------------------------------------------------------------------------------
-# Claims, readings, audit
+# Claims, also under readings; audit
+
+
+JUDGED_AT = "extended"
+"""The scale at which claims are judged under readings."""
+
+
+def is_shared(study: Study, default: Study, scale: str, experiment: str, method: str = "") -> bool:
+    """Return whether an experiment has the same problems in a study under other values of its
+    assumptions and by default, and a method the same runs.
+    """
+    own, other = (problems_job(each, experiment, scale).workspaces for each in (study, default))
+    if any(other[name] != home for name, home in own.items()):
+        return False
+    if not method:
+        return True
+    made, known = (job(each, experiment, method, scale, 0) for each in (study, default))
+    places = all(known.problems[name] == place for name, place in made.problems.items())
+    return places and made.settings == known.settings
 
 
 def claims(study: Study, scale: str) -> Claims:
@@ -330,6 +360,11 @@ def claims(study: Study, scale: str) -> Claims:
             study.labels,
         ),
         {name: experiment.repeats[scale] for name, experiment in experiments.items()},
+        {
+            each.name: alternatives.meaning(study, each.values)
+            for each in study.readings
+            if scale == JUDGED_AT and not study.values
+        },
         sources=study.published_files(),
         code=study.code_for("metrics", "functions"),
         shows={
@@ -345,39 +380,6 @@ def _shown(artefact: TableEntry | Figure) -> list[Display]:
         Display(**{name: each for name, each in part.plain().items() if name in keys(Display)})
         for part in _parts(artefact)
     ]
-
-
-def readings(study: Study, scale: str) -> Readings:
-    """The readings of a study."""
-    compared = study.compared()
-    tables = {name: compared[name] for name in study.votes}
-    experiments = {}
-    for name in dict.fromkeys(each.experiment for each in tables.values()):
-        content = study.experiments[name]
-        experiments[name] = assumptions.experiment(
-            {method: job(study, name, method, scale, 0) for method in content.methods},
-            [each for each in compared.values() if each.experiment == name and each.published],
-            content.repeats["full"],
-            study.reading_repeats,
-            problems_job(study, name, scale),
-        )
-    methods = {method for each in experiments.values() for method in each.chunks}
-    homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
-    beside = study.baseline_comparison
-    return Readings(
-        study.key,
-        tables,
-        study.votes,
-        alternatives.assumptions(study, methods),
-        study.pairs,
-        experiments,
-        beside.proposed if beside else None,
-        relative(study.folder),
-        claims(study, scale),
-        sources=[*study.published_files(), *study.maps(homes)],
-        code=study.code_for("metrics", "worlds", "functions"),
-        shows={name: {} for name in experiments},
-    )
 
 
 def audit(study: Study, scale: str) -> Audit:

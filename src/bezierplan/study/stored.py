@@ -62,7 +62,7 @@ def of_nothing(studies: Studies, folder: Path) -> list[Path]:
     """Files in the folders of a scale that no study makes."""
     scale, strangers = folder.resolve().name, []
     for key, study in studies.items():
-        made = {"claims.csv", "claim_checks.csv", "audit.csv"}
+        made = {"claims.csv", "claim_checks.csv", "claims_by_reading.csv", "audit.csv"}
         made.update(*map(study.files_of, (*study.tables, *study.figures)))
         for experiment in study.experiments:
             made |= {f"problems/{experiment}.{end}parquet" for end in ("", "bounds.")}

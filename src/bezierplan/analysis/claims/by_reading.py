@@ -1,81 +1,88 @@
 """Claims under the readings of a paper, and under their own variants: what their verdicts depend
 on.
 
-The verdict on a claim is that under the default, from many runs. It `depends`
+The verdict on a claim is that under the default. It `depends`
 
 - if one of its variants (settings of rivals, rules of counting or maps that the paper does not
-  print) has another one: they rest on as many runs;
-- if the opposite is decided under a reading that nothing excludes and that fits (p at least
-  `LEAST_P`; where none fits, under any that nothing excludes). A reading has fewer runs: each of
-  its verdicts is one of many, so p counts so many times (Bonferroni) and intervals are as much
-  wider; and supported and partly are one side.
+  print) has another one;
+- if a joint reading that is declared for it decides the opposite, where supported and partly are
+  one side.
+
+Both rest on as many runs as the default. A verdict that a reading leaves open is no agreement.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import pandas as pd
 
-from bezierplan.analysis.claims import judge
+from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.material import Material
-from bezierplan.analysis.readings.readings import LEAST_P
 
+DEFAULT = "default"
 SIDES = {"supported": "holds", "partly": "holds", "contradicted": "fails", "no effect": "nothing"}
 """Decided verdict -> its side."""
 MOST_NAMED = 3
-"""Readings or variants that are named; of more, the number is told."""
-BY_DEFAULT = "under the default"
+"""Variants that are named; of more, the number is told."""
+AGAINST = ["-", "0", "?", "+"]
+"""Marks, those first that speak against a claim."""
+
+COLUMNS = [
+    *("study", "id", "check", "reading", "verdict", "verdict_on_check", "holds"),
+    *("place", "group", "relation", "other", "metric", "unit", "scale"),
+    *("effect", "low95", "high95"),
+]
+"""Of claims by reading: the verdict on the whole claim, and on the check; how many of its
+comparisons are +; and the comparison that speaks most against it.
+"""
 
 
-def covered(claims: Iterable[Claim], experiments: Collection[str]) -> list[Claim]:
-    """The claims whose primary checks rest on the runs of some experiments alone, and on no times;
-    these checks, in the primary variant.
+class ClaimTables(NamedTuple):
+    """The claims and checks of a study under one reading, with `columns.CLAIM_COLUMNS` and
+    `columns.CHECK_COLUMNS`.
     """
-    chosen = []
-    for claim in claims:
-        checks = [check for check in claim.checks if check.primary]
-        if all(
-            check.experiments and {*check.experiments} <= {*experiments} and not check.timed
-            for check in checks
-        ):
-            chosen.append(claim.in_primary_variant().but(checks=checks))
-    return chosen
+
+    claims: pd.DataFrame
+    checks: pd.DataFrame
 
 
-def judged(material: Material) -> pd.DataFrame:
-    """The verdicts on claims (id, verdict) for which there is data."""
-    claims, checks = judge.judge(material)
-    missing = {*checks.loc[checks["n"] == 0, "id"]}
-    tested = ~claims["id"].isin(missing) & (claims["verdict"] != "untestable")
-    return claims.loc[tested, ["id", "verdict"]]
+def read_checks(file: str) -> pd.DataFrame:
+    """Return the checks in a file. A column of marks may be of 0 alone, which is a word."""
+    return pd.read_csv(file, dtype={"mark": str, "mark_family": str})
 
 
-def told(
+def with_dependence(
     claims: pd.DataFrame,
-    readings: pd.DataFrame,
-    verdicts: pd.DataFrame,
+    readings: Mapping[str, ClaimTables],
+    meanings: Mapping[str, str],
     names: Mapping[str, str],
 ) -> pd.DataFrame:
-    """Claims of a study with what their verdicts depend on. readings, verdicts: as from
-    `readings.of_study`, empty without readings. names: variant -> its values in words.
+    """Return the claims of a study with what their verdicts depend on. readings: by name. meanings:
+    reading -> what it changes, in words. names: variant -> its values in words.
     """
-    if len(readings):
-        open_ones = readings[readings["excluded_by"].fillna("").eq("") & readings["p"].notna()]
-        fitting = open_ones[open_ones["p"] >= LEAST_P]
-        kept = (fitting if len(fitting) else open_ones).set_index("reading")["meaning"].fillna("")
+    under = {name: each.claims.set_index("id")["verdict"] for name, each in readings.items()}
     claims = claims.assign(readings="")
     primary, decided = claims["primary"].astype(bool), claims["verdict"].isin(SIDES)
-    for index, claim in claims[primary & decided].iterrows():
-        words = []
+    for index, claim in claims[primary].iterrows():
+        own = {name: each[claim["id"]] for name, each in under.items() if claim["id"] in each}
+        claims.loc[index, "readings"] = "; ".join(
+            f"{verdict} under {', '.join(name for name in own if own[name] == verdict)}"
+            for verdict in dict.fromkeys(own.values())
+        )
+        if not decided[index]:
+            continue
         others = claims[~primary & decided & (claims["id"] == claim["id"])]
         others = others[others["verdict"] != claim["verdict"]]
-        for verdict, variants in others.groupby("verdict", sort=False)["variant"]:
-            words.append(f"{verdict} with {_named([names[each] for each in variants], 'variants')}")
-        if len(readings):
-            own = verdicts[verdicts["id"] == claim["id"]].set_index("reading")["verdict"]
-            own = own[own.index.isin(kept.index)]
-            claims.loc[index, "readings"] = _counted(claim["verdict"], own)
-            words += _turned(claim["verdict"], own, kept)
+        words = [
+            f"{verdict} with {_named([names[each] for each in variants])}"
+            for verdict, variants in others.groupby("verdict", sort=False)["variant"]
+        ]
+        side = SIDES[claim["verdict"]]
+        words += [
+            f"{verdict} under {name} ({meanings[name]})"
+            for name, verdict in own.items()
+            if SIDES.get(verdict, side) != side
+        ]
         if words:
             told_first = f"{claim['verdict']} by default, {', '.join(words)}"
             claims.loc[index, "verdict"] = "depends"
@@ -83,23 +90,27 @@ def told(
     return claims
 
 
-def _counted(verdict: str, own: pd.Series) -> str:
-    """Under how many readings a claim is on the side of a verdict."""
-    if own.empty:
-        return BY_DEFAULT
-    same = own.map(SIDES) == SIDES[verdict]
-    return f"{verdict} under {same.sum()} of {len(own)} readings"
+def _named(names: list[str]) -> str:
+    return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} variants"
 
 
-def _turned(verdict: str, own: pd.Series, meanings: pd.Series) -> list[str]:
-    """The verdicts on another side, with the readings that they hang on."""
-    turned = own[own.isin(SIDES) & (own.map(SIDES) != SIDES[verdict])]
-    words = []
-    for other, names in turned.groupby(turned, sort=False).groups.items():
-        named = [f"{each.replace('=', ' = ')} ({meanings[each]})" for each in names]
-        words.append(f"{other} with {_named(named, 'readings')}")
-    return words
-
-
-def _named(names: list[str], what: str) -> str:
-    return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} {what}"
+def by_check(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
+    """Return a row for each claim, each of its primary checks, and each reading under which it was
+    judged, with `COLUMNS`.
+    """
+    modes, rows = {claim.id: claim.holds for claim in claims}, []
+    for name, (judged, checks) in readings.items():
+        first = judged.loc[judged["primary"].astype(bool), ["id", "variant", "verdict"]]
+        compared = checks[checks["primary"].astype(bool)].merge(first, on=["id", "variant"])
+        for (claim, _), own in compared.groupby(["id", "check"], sort=False):
+            marks, in_family = own["mark"].to_list(), own["mark_family"].to_list()
+            against = own.iloc[min(range(len(own)), key=lambda row: AGAINST.index(marks[row]))]
+            rows.append(
+                against.to_dict()
+                | {
+                    "reading": name,
+                    "verdict_on_check": verdicts.verdict(marks, in_family, modes[claim]),
+                    "holds": f"{marks.count('+')} of {len(marks)}",
+                }
+            )
+    return pd.DataFrame(rows, columns=COLUMNS)

@@ -181,14 +181,7 @@ def _findings(
             for each in comparisons.comparisons(check, claim, material)
         ]
     entries = [
-        MarkedComparison(
-            number,
-            check,
-            check.primary,
-            terms,
-            compared,
-            verdicts.among(finding, check, material.among),
-        )
+        MarkedComparison(number, check, check.primary, terms, compared, finding)
         for terms, compared, finding in judged
     ]
     return _together(entries) if check.together else entries

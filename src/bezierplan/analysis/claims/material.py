@@ -51,15 +51,13 @@ class Material(NamedTuple):
     """The data on which a study's claims are judged, everything by name.
 
     results: of each experiment that was run. published: files of published numbers, named without
-    `.csv`. functions: of the study's file in `papers/`. among: of how many readings the results are
-    those of one.
+    `.csv`. functions: of the study's file in `papers/`.
     """
 
     study: StudyForClaims
     results: dict[str, Results]
     published: dict[str, pd.DataFrame]
     functions: dict[str, Any]
-    among: int = 1
 
 
 class Untestable(Exception):

@@ -31,8 +31,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bezierplan.analysis.claims.check import ClaimCheck
-from bezierplan.analysis.claims.effects import ALPHA, SIDES, Finding
+from bezierplan.analysis.claims.effects import ALPHA, Finding
 
 # Least share of all comparisons that must be decided; if no decided one speaks against the claim,
 # the least share that must hold.
@@ -53,28 +52,6 @@ def mark(finding: Finding, p: float) -> str:
     if finding.toward and p < ALPHA:
         return "+" if finding.toward > 0 else "-"
     return "0" if finding.negligible else "?"
-
-
-def among(finding: Finding, check: ClaimCheck, number: int) -> Finding:
-    """A finding as one of a number of them, any of which may decide: p counts so many times
-    (Bonferroni), and the interval is as much wider as that of a normal effect.
-    """
-    if number == 1:
-        return finding
-    from scipy import stats
-
-    wider = stats.norm.ppf(ALPHA / 2 / number) / stats.norm.ppf(ALPHA / 2)
-    low, high = (
-        finding.effect + wider * (end - finding.effect) for end in (finding.low95, finding.high95)
-    )
-    least = SIDES.get(check.direction, 0) * check.least
-    within = max(abs(low - least), abs(high - least)) <= finding.margin
-    return finding._replace(
-        p=min(1.0, number * finding.p),
-        low95=low,
-        high95=high,
-        negligible=finding.negligible and within,
-    )
 
 
 def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:

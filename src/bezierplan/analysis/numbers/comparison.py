@@ -44,7 +44,6 @@ number. Columns:
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -145,8 +144,7 @@ def compare(
     baselines: list[str],
     name: str,
     reconstructed: bool = False,
-    votes: dict[str, dict] | None = None,
-    by_reading: pd.DataFrame | None = None,
+    fitted: dict[str, dict] | None = None,
 ) -> pd.DataFrame:
     """The published numbers of a table next to ours, in the order of the table; the columns are
     described above.
@@ -154,8 +152,8 @@ def compare(
     published: as from `read_published`. variant_of: method -> the
     method whose published numbers it is compared with. baselines: methods without a published
     number. Variants of the table's methods and baselines get rows, whether or not the table shows
-    them. name: `study/table`, which seeds each row's random draws. reconstructed, votes: as in
-    `decides_nothing`. by_reading: as from `of_tables`, for each reading of the map.
+    them. name: `study/table`, which seeds each row's random draws. reconstructed, fitted: as in
+    `decides_nothing`.
     """
     key_columns = keys_of(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
@@ -190,11 +188,7 @@ def compare(
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    on_open_map = pd.Series(reconstructed, both.index)
-    if by_reading is not None:
-        own = by_reading[by_reading["table"] == name.partition("/")[2]]
-        on_open_map &= ~(table["in_range"].eq(False) & _outside_in_all(both, own, key_columns))
-    reasons = decides_nothing(both, spec, on_open_map, votes)
+    reasons = decides_nothing(both, spec, reconstructed, fitted or {})
     open_ones = (reasons != "") & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(open_ones, "inconclusive")
     table["why"] = table["why"].mask(open_ones, reasons)
@@ -207,64 +201,31 @@ def compare(
 
 
 def decides_nothing(
-    numbers: pd.DataFrame, spec: Pivot, on_open_map: pd.Series, votes: dict[str, dict] | None
+    numbers: pd.DataFrame, spec: Pivot, reconstructed: bool, fitted: dict[str, dict]
 ) -> pd.Series:
     """Why each number of a table neither agrees nor disagrees with ours, wherever it lies; empty if
     it may. The rule of evidence:
 
-    - A quantity that the paper does not define, or a map that it does not print (`on_open_map`, or
-      one draw of a random one), decides nothing: our definition or our map may be wrong. How near
-      such numbers are is told, and a path that has such a length is named. Where other maps are
-      declared, a number that lies outside under every reading, whether of the map or of a method,
-      disagrees all the same.
-    - A number to which something was fitted has no vote. votes: metric -> which numbers of the
-      table have one (column -> value or list of values); None for a table to which nothing was
-      fitted.
+    - A quantity that the paper does not define, or a map that it does not print (`reconstructed`,
+      or one draw of a random one), decides nothing: our definition or our map may be wrong. How
+      near such numbers are is told, and a path that has such a length is named.
+    - A number to which something was fitted confirms nothing. fitted: metric -> which numbers of
+      the table are such (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
-    voted = pd.Series(votes is None, numbers.index)
-    for metric, where in (votes or {}).items():
-        voted |= numbers.index.isin(select(numbers, where | {"metric": metric}).index)
+    printed = numbers.assign(method=numbers.get("printed_method"))
+    was_fitted = pd.Series(False, numbers.index)
+    for metric, where in fitted.items():
+        was_fitted |= printed.index.isin(select(printed, where | {"metric": metric}).index)
     reasons = pd.Series("", numbers.index)
     for reason, whose in (
-        (FITTED, ~voted),
+        (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
-        (NO_MAP, on_open_map),
+        (NO_MAP, pd.Series(reconstructed, numbers.index)),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
         reasons = reasons.mask(whose, reason)
     return reasons
-
-
-def of_tables(
-    results: dict[str, Results], tables: dict[str, Pivot], files: dict[str, str], study: str
-) -> pd.DataFrame:
-    """The printed numbers of those tables that show some results, with the columns table, keys of
-    all tables, metric, statistic, in_range. files: of published numbers.
-    """
-    frames = []
-    for name, spec in tables.items():
-        if spec.experiment not in results:
-            continue
-        published = read_published(files[Path(spec.published).stem], spec)
-        compared = compare(results[spec.experiment], spec, published, {}, [], f"{study}/{name}")
-        printed = compared[compared["value_published"].notna()]
-        frames.append(
-            printed[[*keys_of(published), "metric", "statistic", "in_range"]].assign(table=name)
-        )
-    return pd.concat(frames, ignore_index=True)
-
-
-def _outside_in_all(
-    numbers: pd.DataFrame, by_reading: pd.DataFrame, key_columns: list[str]
-) -> np.ndarray:
-    """Whether each number (n,) lies outside under every one of several readings."""
-    keys = [*key_columns, "metric", "statistic"]
-    outside = by_reading["in_range"].eq(False)
-    places = by_reading.reindex(columns=keys)  # a table without printed numbers has other keys
-    found = outside.groupby([places[key] for key in keys]).agg(["all", "size"])
-    always = found.index[found["all"] & (found["size"] > 1)]
-    return pd.MultiIndex.from_frame(numbers[keys]).isin(always)
 
 
 def counted_as(numbers: pd.DataFrame) -> pd.Series:

@@ -21,11 +21,8 @@ from bezierplan.running.inputs import PAPER
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
-# Of each study: what its printed numbers say alone; and its readings, if they are scored.
-AUDIT, READINGS = (
-    "audit.csv",
-    ("readings.csv", "claims_by_reading.csv", "numbers_by_reading.csv"),
-)
+# Of each study: what its printed numbers say alone, and its claims under readings.
+AUDIT, BY_READING = "audit.csv", "claims_by_reading.csv"
 BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
@@ -66,10 +63,8 @@ def write(
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
-        shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
-        for name in READINGS:
-            if (file := RESULTS / key / name).exists():
-                shutil.copyfile(file, KEPT / f"{key}_{name}")
+        for name in (AUDIT, BY_READING):
+            shutil.copyfile(RESULTS / key / name, KEPT / f"{key}_{name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in titles)
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
@@ -132,8 +127,8 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
 def following(folder: Path, verdicts: verdict.Files, *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
-    evidence = sorted(map(str, [*folder.glob(f"*_{READINGS[0]}"), *folder.glob(WORTH)]))
-    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, evidence)
+    worth = [str(file) for file in folder.glob(WORTH)]
+    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, worth)
 
 
 def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> str:

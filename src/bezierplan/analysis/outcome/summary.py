@@ -2,7 +2,6 @@
 
 import itertools
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -38,11 +37,11 @@ def verdicts(
     whole: pd.DataFrame,
     files: verdict.Files,
     audit_files: list[str],
-    evidence: list[str],
+    worth: list[str],
 ) -> dict[str, str]:
     """By study, what follows. measures: rows with the columns
-    `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`. evidence: files of readings, and of
-    methods beside a generic optimiser, as far as there are any.
+    `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`. worth: the file of methods beside a
+    generic optimiser, if there is one.
     """
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
     tables = {
@@ -52,9 +51,8 @@ def verdicts(
         "wholes": whole,
         "audit": audits,
     }
-    for name in ("readings", "worth"):
-        if own := [file for file in evidence if Path(file).stem.endswith(name)]:
-            tables[name] = pd.concat(map(pd.read_csv, own), ignore_index=True)
+    if worth:
+        tables["worth"] = pd.read_csv(*worth)
     return {
         study: verdict.markdown(verdict.read(file), verdict.own_rows(tables, study), labels)
         for study, (file, labels) in files.items()

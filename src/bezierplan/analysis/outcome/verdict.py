@@ -30,7 +30,7 @@ TAKES = {
 }
 Files = Mapping[str, tuple[str, Mapping[str, str]]]
 """By study, the file of its sentences, and its labels."""
-Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "readings", "worth"]
+Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "worth"]
 
 
 class Value(Model):

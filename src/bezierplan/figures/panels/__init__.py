@@ -20,7 +20,7 @@ from __future__ import annotations
 import functools
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
@@ -83,7 +83,8 @@ class Sources:
 
     results: by experiment. workspaces, problems: those drawn without runs, by name. functions:
     those of the study's module, by name. published: all published tables by file name. study: its
-    name, from which with others the runs of panels that plan take their seeds.
+    name, from which with others the runs of panels that plan take their seeds. alternatives: what
+    each is (assumption, detail, value), and the comparisons of claims under it.
     """
 
     results: Mapping[str, Results] = field(default_factory=dict)
@@ -92,6 +93,7 @@ class Sources:
     published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     study: str = ""
     problems: Mapping[str, Problem] = field(default_factory=dict)
+    alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
 
     def table(self, panel: TablePanel) -> pd.DataFrame:

@@ -1,0 +1,141 @@
+"""A specification curve: what a claim rests on, the effect with its interval, by default and under
+every single alternative to what the paper leaves open.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import naming
+from bezierplan.analysis.claims.claim import ClaimId
+from bezierplan.figures import style
+from bezierplan.figures.panels import Note, Panel, Sources
+from bezierplan.schema.model import Names
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+FEW = 100
+"""Runs of each method under each condition, at most."""
+
+# Of a row, of the gap between two assumptions, and of the axes, in inches.
+_ROW, _GAP, _WIDTH = 0.125, 0.06, 2.7
+
+# Letters of a line of text beside the axes.
+_LETTERS = 50
+
+_LOOKS = {
+    "+": style.mark("o", 3.5, style.BLUE, label="the claim holds"),
+    "?": style.mark("o", 3.5, style.BLACK, markerfacecolor=style.FREE, label="not decided"),
+    "0": style.mark("s", 3.2, style.BLACK, markerfacecolor=style.FREE, label="too small to matter"),
+    "-": style.mark("X", 4.2, style.RED, label="the opposite holds"),
+}
+
+# Shares in words; an event in some runs needs any.
+_SHARES = {"all": 1.0, "some": 0.0, "none": 0.0, "as printed": "nan"}
+
+
+class Options(Panel):
+    """Keys of a panel."""
+
+    claim: Annotated[ClaimId, Names("claim")] = Field(
+        description="the id of a claim: its decisive comparison is drawn, by default and under "
+        "each alternative of `assumptions.yaml` that no sentence excludes, of few runs"
+    )
+
+    def source(self, sources: Sources) -> pd.DataFrame:
+        """The decisive comparison under each alternative."""
+        import pandas as pd
+
+        rows = []
+        for alternative, checks in sources.alternatives:
+            own = checks[(checks["id"] == self.claim) & checks["decisive"]]
+            rows.append(alternative | (own.iloc[0].to_dict() if len(own) else {}))
+        return pd.DataFrame(rows)
+
+
+_COMPARED = ["metric", "statistic", "unit", "scale", "group", "relation", "other", "place"]
+
+
+def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
+    """One row per alternative, the default first, then those of each assumption, and the
+    assumptions by how far one of them moves the effect; columns: assumption, detail, value, what is
+    compared, effect, low95, high95, mark.
+    """
+    frame = source.reindex(
+        columns=["assumption", "detail", "value", *_COMPARED, "effect", "low95", "high95", "mark"]
+    )
+    moved = (frame["effect"] - frame["effect"].iloc[0]).abs().fillna(np.inf)
+    by = {"moved": moved.groupby(frame["assumption"]).transform("max"), "later": frame.index > 0}
+    ascending = {"later": True, "moved": False, "assumption": True, "effect": True}
+    order = frame.assign(**by).sort_values([*ascending], ascending=[*ascending.values()])
+    return order.drop(columns=[*by])
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the rows from top to bottom: in words at the left, what is open and its value."""
+    default, effect = frame.iloc[0], frame["effect"].to_numpy()
+    places = _name_rows(axes, frame)
+    band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
+    axes.axvspan(default["low95"], default["high95"], **band)
+    is_share = default["relation"].startswith("in")
+    label = "share that the claim needs" if is_share else "no difference"
+    needed = _SHARES.get(default["other"], default["other"]) if is_share else 0.0
+    axes.axvline(float(needed), **style.BOUND, label=label)
+    axes.hlines(places, frame["low95"], frame["high95"], color="0.35", linewidth=0.8)
+    axes.plot([], [], **style.INTERVAL)
+    marks, counts = frame["mark"].fillna("?").to_numpy(), []
+    for mark, look in _LOOKS.items():
+        if (chosen := marks == mark).any():
+            axes.plot(effect[chosen], places[chosen], zorder=3, **look)
+            counts.append(f"{look['label']}: {chosen.sum()}")
+    middle = {"xycoords": axes.get_yaxis_transform(), "ha": "center", "va": "center"}
+    for place in places[np.isnan(effect)]:
+        axes.annotate("no value", (0.5, place), **middle)
+    axes.grid(visible=True, axis="x")
+    axes.set_xlabel(_name_effect(default, is_share, scene))
+    return Note(
+        "",
+        f"one row for each alternative, alone, of at most {FEW} runs of a method under a "
+        f"condition; the comparison that decides {options.claim}",
+        f"of {len(frame)} rows, {', '.join(counts)}",
+    )
+
+
+def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
+    """Write what is open and its values beside the axes, shape them, and return where rows are."""
+    names = frame["value"].astype(str).str.replace("_", " ")
+    beside = 4 + 4.1 * names.str.len().max()
+    words = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points", "ha": "right"}
+    top, gap, places = 0.0, _GAP / _ROW, []
+    for _, values in frame.groupby("assumption", sort=False):
+        if top:
+            axes.axhline(top - gap / 2, color="0.88", linewidth=0.5, zorder=0)
+        lines = textwrap.wrap(values["detail"].iloc[0], _LETTERS)
+        rows = max(len(values), len(lines))
+        text = "\n".join(lines)
+        place = (0, top + rows / 2)
+        axes.annotate(text, place, (-beside, 0), va="center", linespacing=1.05, **words)
+        places.append(top + (rows - len(values) + 1) / 2 + np.arange(len(values)))
+        top += rows + gap
+    rows = np.concatenate(places)
+    axes.set_yticks(rows, names)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(top, -gap)
+    axes.set_box_aspect((top + gap) * _ROW / _WIDTH)
+    return rows
+
+
+def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
+    """Return what the axis of the effect shows."""
+    metric = naming.column_name(row["metric"], scene.labels)
+    if is_share:
+        return f"share of runs: {metric}"
+    unit = "share of the other" if row["scale"] == "relative" else row["unit"]
+    unit = "" if unit in ("-", "") or unit != unit else f" ({unit})"
+    return f"difference in {metric}{unit}"
