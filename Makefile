@@ -4,7 +4,7 @@ ARGS   =
 PYTHON = python3.13 python3.12 python3.11 python3
 # Programs run as `python -m`, for the scripts in .venv/bin hold absolute paths and would run the original's files in a copy of the tree.
 RUN       = .venv/bin/python
-SNAKEMAKE = $(RUN) -m snakemake
+SNAKEMAKE = $(RUN) -m bezierplan run
 LOCKED    = --quiet --require-hashes --only-binary :all:
 # Into the environment of an interpreter ($1), some packages ($2). uv takes a third of pip's time, but does not read pip's settings, which may name
 # another index than PyPI.
@@ -25,7 +25,7 @@ help: ## list these targets
 
 reproduce: .venv/ready ## every table and figure of the papers, their claims, with as many runs as they used, into results/full
 	@$(UNLOCK)
-	$(SNAKEMAKE) $(ARGS)
+	$(SNAKEMAKE) all $(ARGS)
 
 smoke: .venv/ready ## the same with few runs, into results/smoke
 	@$(UNLOCK)
@@ -37,14 +37,14 @@ smoke-digests: smoke ## keep the digests of its tables and claims, which `make t
 beyond: .venv/ready ## what goes beyond the papers: variants, baselines, profiles, our own measures and maps; and the page with it
 	@$(UNLOCK)
 	$(SNAKEMAKE) beyond $(ARGS)
-	$(SNAKEMAKE) $(ARGS)
+	$(SNAKEMAKE) all $(ARGS)
 
 extended: .venv/ready ## both, with hundreds to thousands of runs per method, into results/extended
 	@$(UNLOCK)
 	$(SNAKEMAKE) extended $(ARGS)
 
 test: .venv/ready-dev ## lint, the smoke subset, and the tests (with ALL=1 also those of clusters, archives and the like; ARGS go to pytest)
-	@$(MAKE) --no-print-directory --jobs 2 ARGS= lint smoke
+	@$(MAKE) --no-print-directory --jobs 2 $(if $(filter output-sync,$(.FEATURES)),--output-sync) ARGS= lint smoke
 	$(RUN) -m pytest -n auto --dist loadfile $(if $(ALL),,-m "not rare") $(ARGS)
 
 lint: .venv/ready-dev ## code style, import layers and types
@@ -87,7 +87,7 @@ archive: .cache/archive/ready ## results/full with code and environment as an RO
 outcome: .venv/ready ## everything at scales full and extended, then docs/outcome and the README's table
 	@$(UNLOCK)
 	$(SNAKEMAKE) all extended $(ARGS)
-	$(RUN) -m bezierplan outcome
+	$(RUN) docs/outcome.py
 
 lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow pyproject.toml -o environment.txt

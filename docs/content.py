@@ -11,13 +11,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import outcome
 import pandas as pd
 import yaml
 
 from bezierplan.analysis import study_code
-from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import studies_of
-from bezierplan.commands.outcome import named
 from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
@@ -60,7 +59,7 @@ def content() -> tuple[SimpleNamespace, Path]:
             evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
         )
         tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
-        following = outcome.following(OUTCOME, named(studies)[1], *tables)
+        following = outcome.following(OUTCOME, outcome.named(studies)[1], *tables)
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
         study.name, study.definition, study.data = name_of(key), studies[key], page.data

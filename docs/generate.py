@@ -17,11 +17,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import content
+import outcome
 import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
 
-from bezierplan.analysis.outcome import outcome
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings
@@ -219,10 +219,10 @@ def typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
                 yield each, run, problem, study.data["workspaces"][problem["workspace"]]
 
 
-def not_proposed(found: tuple[SimpleNamespace, Any]) -> tuple[bool, bool]:
-    """Whether a run is not of the method that its paper proposes, or not in its default reading."""
+def not_proposed(found: tuple[SimpleNamespace, Any]) -> bool:
+    """Whether a run is not of the method that its paper proposes."""
     study, (shown, *_) = found
-    return shown["method"] != algorithm_of(study.key), "profile=default" not in shown["median"]
+    return shown["method"] != algorithm_of(study.key)
 
 
 def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:

@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 
 import content
+import outcome
 
-from bezierplan.analysis.outcome import outcome
 from bezierplan.figures.page import build
 
 # The first is Chromium without windows, which needs half the CPU time of the others.

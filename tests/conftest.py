@@ -5,6 +5,7 @@ every time.
 import gc
 import os
 import sys
+from collections import Counter
 from functools import partial
 from pathlib import Path
 
@@ -112,3 +113,10 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(10_000, 20, 50)
     gc.enable()
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Tests that are skipped for one reason are one line."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    for reason, count in Counter(report.longrepr[2] for report in skipped).items():
+        terminalreporter.write_line(f"{count} tests: {reason}")

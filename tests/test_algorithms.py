@@ -26,12 +26,12 @@ CASES = {
             {"population": 16, "iterations": 4, "eta": 0.5, "mutation_rate": 0.05},
         ],
     ),
-    ("tharwat2018", "maps"): (
-        ["equal", "public"],
+    ("tharwat2018", "search_range"): (
+        ["equal", "equal_wide"],
         [{"chaotic_term": "cognitive"}, {}, {"control_points": 5, "iterations": 9}],
     ),
     ("differential_evolution", "worth"): (
-        ["equal", "public"],
+        ["equal"],
         [{}, {"population": 6, "generations": 20, "weight": 0.5, "crossover": 0.5}],
     ),
     ("ma2020", "environments"): (

@@ -112,11 +112,11 @@ LIES = {
     "extra None": (PLAN._replace(extra=None), "extra: expected names with numbers or truths"),
     "extra a list": (
         PLAN._replace(extra={"tries": [1]}),
-        "extra: tries: expected a number within 64 bits, or a truth",
+        "extra: tries: expected a number, a whole one of at most 2**53, or a truth",
     ),
     "extra huge": (
         PLAN._replace(extra={"tries": 2**70}),
-        "extra: tries: expected a number within 64 bits, or a truth",
+        "extra: tries: expected a number, a whole one of at most 2**53, or a truth",
     ),
     "extra of a wide name": (
         PLAN._replace(extra={"\uff46easible": 1}),

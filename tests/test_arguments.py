@@ -209,6 +209,25 @@ def test_an_answer_is_json_and_a_picture_in_a_notebook(tmp_path):
     assert values["path"]["points"][0] == [0.5, 0.5]
     assert values["feasible"] is True
     assert values["collision"] is None
-    html = answer._repr_html_()
-    assert html.startswith("<svg")
-    assert "% above the shortest path" in html
+    for shown in (answer, bp.check(PROBLEM, answer.path), PROBLEM, PROBLEM.workspace):
+        html = shown._repr_html_()
+        assert html.startswith("<img")
+        assert len(html) < 60_000
+    assert "% above the shortest path" in answer._repr_html_()
+
+
+def test_methods_are_compared_on_one_map_with_one_legend():
+    room = bp.Grid(np.arange(9).reshape(3, 3) == 4, 1.0, "m")
+    problem = bp.Problem("around", room, (0.5, 1.5), (2.5, 1.5))
+    compared = bp.compare(problem, {"ours": None, "straight": ("straight_line", {})})
+    (legend,) = compared.plot().figure.legends
+    names = sorted(text.get_text() for text in legend.get_texts())
+    assert names == [
+        "exact shortest path",
+        "first collision",
+        "occupied cell",
+        "ours",
+        "start",
+        "straight (no free path)",
+        "target",
+    ]

@@ -16,10 +16,12 @@ from studies import planned, study
 from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
-SETTINGS = study("song2016").resolved("smooth") | {"population": 20, "generations": 10}
-SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
+DEFAULT = study("song2016").resolved("smooth") | {"population": 20, "generations": 10}
+# The objective is that of the best chromosome, with all its points.
+SETTINGS = DEFAULT | {"rejection": "none"}
+SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 501, "bezier": 601}
 random_grid = partial(fields.random_grid, shape=(16, 16), cell=10.0)
 OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
 WALL = from_lines(["......#.", "......#.", "......#.", "......#."], 1.0, "unit")
@@ -116,7 +118,7 @@ def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
         assert (np.diff(last.history) > 0).any()
         assert last.objective == last.history[-1] >= best.objective
         worse += last.objective > best.objective
-        length, bad = reference(last.path, grid, 601)
+        length, bad = reference(last.path, grid, 501)
         column, row = (last.path.points / 10).astype(int).T
         assert last.objective == pytest.approx(
             length + 10 * bad + penalty * grid.occupied[row, column].sum()
@@ -135,7 +137,7 @@ def test_surplus_cells_of_a_narrow_grid_are_occupied():
     length, _ = reference(
         found.path,
         Grid(np.pad(narrow.occupied, ((0, 1), (0, 3)), constant_values=True), 1.0, "unit"),
-        601,
+        501,
     )
     assert found.objective == pytest.approx(length)
 
@@ -152,6 +154,40 @@ def test_polyline_measured_along_its_length_is_exact():
     assert found.objective - 10 * found.extra["bad_samples"] == pytest.approx(
         curves.length(found.path)
     )
+
+
+def test_default_chain_has_a_continuous_second_derivative():
+    """song2016, eq. 6, whatever cells the points lie in, those that coincide included."""
+    assert DEFAULT["curve"] == "piecewise_cubic"
+    for points in np.random.default_rng(3).integers(0, 3, (50, 8, 2)).astype(float):
+        pieces = curves.bezier_pieces(Path(DEFAULT["curve"], points))
+        for order in range(3):
+            derivative = np.diff(pieces, n=order, axis=1)
+            assert derivative[1:, 0] == pytest.approx(derivative[:-1, -1], abs=1e-12)
+
+
+@pytest.mark.parametrize("curve", curves.B_SPLINES)
+def test_coinciding_points_leave_the_final_path_and_nothing_else(curve):
+    """On a map of few cells, round a wall, eight points take some of them twice."""
+    grid = from_lines(["....", ".##."], 1.0, "unit")
+    changed = harmful = 0
+    for seed in range(20):
+        kept, rest, harmless = (
+            plan(grid, 0, 3, seed, curve=curve, samples=SAMPLES[curve], rejection=rejection)
+            for rejection in ("none", "all", "harmless")
+        )
+        assert rest.objective == kept.objective
+        assert np.array_equal(rest.history, kept.history)
+        assert np.array_equal(rest.path.points, binary_genetic.distinct(kept.path.points))
+        bad = reference(rest.path, grid, SAMPLES[curve])[1]
+        assert rest.extra["bad_samples"] == bad
+        assert rest.claimed_feasible == (bad == 0)
+        worse = bad > kept.extra["bad_samples"]
+        assert np.array_equal(harmless.path.points, (kept if worse else rest).path.points)
+        changed += len(rest.path.points) < 8
+        harmful += worse
+    assert changed > 10
+    assert harmful > 0
 
 
 BITS, GENES = 8, 6

@@ -44,22 +44,21 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
 
 
 @pytest.mark.parametrize(
-    ("method", "numbers", "first", "last"),
-    [("pso", 4, 6, 1), ("random_search", 1, 6, None)],
+    ("fewer", "numbers"),
+    [({"particles": {"40": 100, "60": 100}}, 10), ({"method": {"cpso2_singer": 100}}, 1)],
 )
-def test_conditions_with_fewer_runs_leave_the_later_chunks(method, numbers, first, last):
-    """Of the maps of tharwat2018: 4,000 runs of equal circles under the default profile, 1,000 of
-    other conditions and of baselines.
-    """
-    own = studies()["tharwat2018"]
-    chunks = jobs.chunks(own, "maps", method, "extended")
+def test_conditions_with_fewer_runs_leave_the_later_chunks(fewer, numbers):
+    """1,000 runs with each of one to ten control points and three numbers of particles."""
+    own, name, method = studies()["tharwat2018"], "control_points", "cpso2_singer"
+    own = own.but(experiments=own.experiments | {name: own.experiments[name].but(fewer=fewer)})
+    chunks = jobs.chunks(own, name, method, "extended")
     assert len(chunks) == numbers
-    made = [jobs.job(own, "maps", method, "extended", number) for number in chunks]
-    assert len(made[0].conditions()) == first
+    made = [jobs.job(own, name, method, "extended", number) for number in chunks]
+    assert len(made[0].conditions()) == 30
     for chunk in made[1:]:
-        assert [each.name for each in chunk.conditions()] == ["equal,profile=default"]
+        assert [each.values["particles"] for each in chunk.conditions()] == 10 * [20]
     assert [chunk.repeats for chunk in made] == [
-        [1000 * number, 1000 * number + 1000] for number in chunks
+        [100 * number, 100 * number + 100] for number in chunks
     ]
 
 

@@ -717,6 +717,10 @@ def test_variants_take_the_place_of_what_the_checks_name():
     metric = {"checks": [LOWER], "variants": {"metric": ["objective", "evaluations"]}}
     runs = runs[runs["workspace"] == "grid"].assign(evaluations=lambda each: -each["objective"])
     assert judge(metric, runs)[0]["verdict"].to_list() == ["supported", "contradicted"]
+    check, wanted = checks_of_claims.check_of(LOWER), {"blocked": None}
+    assert variants.in_variant([check], wanted, wanted) == [check]
+    (changed,) = variants.in_variant([check], wanted, {"blocked": True})
+    assert changed.where == check.where | {"blocked": True}
 
 
 def test_variant_that_is_a_list_is_exchanged_member_by_member():

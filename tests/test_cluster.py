@@ -94,7 +94,7 @@ def local():
         name: found[name]
         for name in (
             "song2016/routes/smooth",
-            "song2016/routes/smooth_cubic",
+            "song2016/routes/smooth_quadratic",
             "song2016/routes/smooth_single",
         )
     }

@@ -108,6 +108,12 @@ FAULTS_OF_RUNS = {
         "random numbers",
         "another plan in another process; hash()",
     ),
+    "a column of two types": (
+        "narrow",
+        "return Plan(path, history[-1], True, evaluations, history, '', {'tries': True})",
+        "plan",
+        "column tries: missing, or a truth and a number in two runs",
+    ),
     "a column of another": (
         "start is target",
         "return Plan(path, history[-1], True, evaluations, history, '', {'length': 1})",
@@ -185,6 +191,12 @@ def test_what_ends_the_runs_is_one_fault(case, tmp_path):
     ("old", "new", "fact", "told"),
     [
         ("KEPT =", "exact = True\nKEPT =", "claims", EXACT),
+        (
+            '"tries": 1',
+            '"own": np.inf',
+            "plan",
+            "column own: inf; expected a finite number, or nan",
+        ),
         (
             "    start, target",
             "    rng = np.random.default_rng(5)\n    start, target",

@@ -290,7 +290,7 @@ def test_a_path_is_drawn_with_its_points_and_the_exact_shortest_one():
         ("piecewise_quadratic", "all", {"control", "hull"}),
         ("piecewise_quadratic", "points", {"points"}),
         ("piecewise_quadratic", "none", set()),
-        ("polyline", "points", {"nodes"}),  # not control points, which are not on the curve
+        ("polyline", "all", set()),  # whose corners lie on it
         ("spline", "all", {"control"}),
         ("ferguson", "all", set()),  # tangents are no control points
     ],
@@ -304,8 +304,10 @@ def test_points_of_a_path(curve, control, expected):
 
 
 def test_paths_meet_the_corners_of_a_polyline():
-    places = parts(of_run(results(curve="polyline")).round(9))
-    assert all(corner in places["path"] for corner in places["control"])
+    found = results(curve="polyline")
+    places = parts(of_run(found).round(9))
+    corners = np.reshape(found.runs["path_points"].iloc[0], (-1, 2)).tolist()
+    assert all(corner in places["path"] for corner in corners)
 
 
 def test_paths_side_by_side():

@@ -4,6 +4,7 @@ summary.
 
 import math
 
+import outcome
 import pandas as pd
 import pytest
 
@@ -115,13 +116,14 @@ def test_deviations_are_relative_and_of_quantities_that_the_paper_defines():
 
 
 def test_markdown_leaves_out_what_no_study_has():
-    text = headline.markdown(
+    text = outcome.markdown(
         headline.headline(
             numbers(("one", "agrees", 1.0, 1.0, {})),
             claims(one=["supported"]),
             measured(),
             {"one": "One"},
-        )
+        ),
+        {},
     )
     assert text.startswith(
         "**Of 1 printed number 1 can be tested; of these we reproduce 1. Of 1 claim"

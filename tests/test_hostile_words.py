@@ -10,6 +10,7 @@ from bezierplan.commands import run
 NO_STUDY = "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first; "
 WORDS = {
     "results of two lines": (["verify", "x\ny"], "x\\ny: no runs here"),
+    "a misspelt kind": (["list", "metods"], "list: metods: unknown; did you mean methods?"),
     "no core": (["verify", ".", "--cores", "0"], "--cores: 0; expected a number of at least 1"),
     "a study of two lines": (["new", "x\n"], f"x\\n: {NO_STUDY}"),
     "a study of a long name": (["new", "x" * 300], NO_STUDY),

@@ -6,6 +6,7 @@ import itertools
 import math
 
 import numpy as np
+import outcome
 import pandas as pd
 import pytest
 from studies import FOLDER, drawing
@@ -13,7 +14,6 @@ from studies import FOLDER, drawing
 from bezierplan.analysis import measures
 from bezierplan.analysis.audit import audit, identified
 from bezierplan.analysis.claims import verdicts
-from bezierplan.analysis.outcome import outcome
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.papers.song2016 import metrics as song2016
 from bezierplan.places import TREE

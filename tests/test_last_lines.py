@@ -16,7 +16,13 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
         "Time: 0:03:24",
     ]
     page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
-    assert plugin.last_lines({PAGE}, 1) == ["Results: results/full", "Time: 0:00:01", page]
+    made = {PAGE, *(ROUTE.with_name(name) for name in ("a.tex", "b.tex", "c.svg", "c.png"))}
+    assert plugin.last_lines(made, 1) == [
+        "Made: 2 tables, 1 figure, 1 page",
+        "Results: results/full, results/full/song2016",
+        "Time: 0:00:01",
+        page,
+    ]
 
 
 @pytest.mark.parametrize(

@@ -27,8 +27,8 @@ problem = partial(problem_of, "ma2020")
 MAPS = {
     # occupied cells; shortest path of 8 neighbours, half diagonals at the ends included, by both
     # rules for corners; exact shortest path
-    "environment1": (60, 10 + 15 * math.sqrt(2), 33.5563492, 29.2080963),
-    "environment2": (83, 14 + 13 * math.sqrt(2), 32.9705627, 30.0618849),
+    "environment1": (60, 10 + 15 * math.sqrt(2), 31.7989899, 29.4839057),
+    "environment2": (83, 14 + 13 * math.sqrt(2), 34.1421356, 30.0020079),
 }
 
 
@@ -69,24 +69,24 @@ def test_maps(name):
 # Free control points of the shortest curves found.
 BEST_KNOWN = {
     "environment1": [
-        (9.5, 14.5),
-        (1.5, 3.5),
-        (9.5, 6.5),
-        (10.5, 7.5),
-        (8.5, 19.5),
-        (1.5, 5.5),
-        (15.5, 19.5),
-        (18.5, 19.5),
+        (15.5, 3.5),
+        (0.5, 1.5),
+        (9.5, 2.5),
+        (9.5, 5.5),
+        (19.5, 17.5),
+        (2.5, 0.5),
+        (18.5, 14.5),
+        (14.5, 13.5),
     ],
     "environment2": [
+        (4.5, 14.5),
+        (3.5, 0.5),
+        (0.5, 12.5),
+        (19.5, 14.5),
+        (4.5, 1.5),
         (7.5, 12.5),
-        (3.5, 10.5),
-        (4.5, 0.5),
-        (7.5, 16.5),
-        (3.5, 9.5),
-        (13.5, 19.5),
-        (13.5, 19.5),
-        (1.5, 13.5),
+        (17.5, 18.5),
+        (6.5, 15.5),
     ],
 }
 

@@ -65,9 +65,9 @@ DRIVEN = {
     ("env1", 10): ((2, 1), 26.7527, 29.380),
     ("env1", 25): ((6, 2), 22.6296, 29.197),
     ("env1", 50): ((8, 7), 13.1531, 26.287),
-    ("env2", 10): ((4, 1), 28.0907, 31.646),
-    ("env2", 25): ((9, 1), 23.1908, 32.078),
-    ("env2", 50): ((9, 5), 14.1421, 31.916),
+    ("env2", 10): ((3, 1), 29.0996, 32.660),
+    ("env2", 25): ((9, 2), 23.0285, 31.930),
+    ("env2", 50): ((9, 5), 14.1421, 31.945),
 }
 
 
@@ -255,7 +255,7 @@ def test_an_own_map_of_any_size_needs_configuration_alone():
         assert free["length"].to_numpy() == pytest.approx(free["objective"].to_numpy())
 
 
-def test_closed_corners_contradict_five_printed_means_on_the_reconstructed_maps():
+def test_closed_corners_contradict_six_printed_means_on_the_invented_maps():
     """Assumption M19 prints the optima."""
     reason = next(each.reason for each in STUDY.assumptions if each.id == "M19")
     below = 0
@@ -270,7 +270,7 @@ def test_closed_corners_contradict_five_printed_means_on_the_reconstructed_maps(
         assert f"{least:.4f}" in reason
         means = PUBLISHED[table].query("metric == 'objective'")["value"]
         below += int((means < least).sum())
-    assert below == 5
+    assert below == 6
 
 
 def test_holm_against_a_worked_example():

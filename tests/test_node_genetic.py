@@ -4,6 +4,7 @@ its operators, degenerate cases.
 
 import itertools
 import math
+from collections import Counter
 from functools import partial
 from pathlib import Path as File
 
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from studies import planned, study
@@ -42,8 +44,8 @@ MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspace
 OPTIMA = {
     "env1_initial": 26.268314,
     "env1_modified": 28.946764,
-    "env2_initial": 35.548689,
-    "env2_modified": 32.194010,
+    "env2_initial": 35.605289,
+    "env2_modified": 32.250610,
 }
 SETTINGS = study("meledje").resolved("proposed")
 plan = partial(planned, "meledje", "proposed", population=20, generations=30)
@@ -242,6 +244,29 @@ def test_first_paths_are_found_in_corridors_and_dead_ends():
     for grid in (Grid(corridor, 1.0, "cell"), dead_end):
         found = plan(problem(grid), generations=0, population=100)
         assert found.extra["feasible_last"] == 1.0
+
+
+def test_rejection_keeps_feasible_paths_with_the_chances_that_they_have():
+    """On a map so small that all random paths of up to two inner nodes can be listed."""
+    grid = from_lines(["...", ".#.", "..."], 1.0, "cell")
+    free, ground = np.array([1, 2, 3, 5, 6, 7]), ground_of(grid, 1.0)
+    chances = {
+        (0, *inner, 8): 1 / len(free) ** count
+        for count in range(3)
+        for inner in itertools.product(free.tolist(), repeat=count)
+        if all(met(a, b, grid) == 0 for a, b in itertools.pairwise((0, *inner, 8)))
+    }
+    ways = node_genetic.free_ways(8, free, ground, 2)
+    by_count = [sum(p for path, p in chances.items() if len(path) == n) for n in (2, 3, 4)]
+    assert ways[0] == pytest.approx(by_count)
+    rng, path, drawn = np.random.default_rng(0), np.zeros(4, dtype=np.int64), Counter()
+    for _ in range(4000):
+        count = node_genetic.kept_path(rng, path, 8, free, ground, ways)
+        drawn[tuple(path[:count].tolist())] += 1
+    expected = np.array(list(chances.values())) / sum(chances.values()) * 4000
+    assert drawn.keys() <= chances.keys()
+    assert stats.chisquare([drawn[path] for path in chances], expected).pvalue > 1e-3
+    assert node_genetic.kept_path(rng, path, 8, free, ground, np.zeros_like(ways)) == 0
 
 
 # Operators

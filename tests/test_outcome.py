@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+import outcome
 import pandas as pd
 import pytest
 
-from bezierplan.analysis.outcome import headline, outcome, summary
-from bezierplan.commands import outcome as command
+from bezierplan.analysis.outcome import headline, summary
 from bezierplan.commands import studies_of
 
 ROOT = Path(__file__).parents[1]
@@ -14,8 +14,8 @@ ROOT = Path(__file__).parents[1]
 
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
-    shown = outcome.table(ROOT / outcome.KEPT, *command.named(studies_of()))
-    assert summary.with_block(readme, outcome.BLOCK, shown) == readme
+    shown = outcome.table(ROOT / outcome.KEPT, *outcome.named(studies_of()))
+    assert outcome.with_block(readme, outcome.BLOCK, shown) == readme
 
 
 def comparison(values, ours, methods=("plain", "other")):
@@ -126,11 +126,11 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
         claims.assign(verdict=["supported", "partly", "contradicted"]),
         claims.assign(verdict=["undecided", "partly", "contradicted"]),
     )
-    found = summary.with_papers_size(extended, full.iloc[::-1])
+    found = outcome.with_papers_size(extended, full.iloc[::-1])
     assert found["verdict"].to_list() == ["supported", "partly", "contradicted"]
     assert found["verdict_papers_size"].to_list() == ["undecided", "partly", "contradicted"]
 
 
 def test_text_without_the_part_is_told():
     with pytest.raises(ValueError, match="no part between"):
-        summary.with_block("nothing here", "outcome", "x")
+        outcome.with_block("nothing here", "outcome", "x")

@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 import starts
 
+from bezierplan.__main__ import main
 from bezierplan.analysis import words
 from bezierplan.running import recheck
 from bezierplan.study import reading, stored
@@ -138,11 +139,11 @@ high,length,mean,30,m,9.7
 """
 
 
-def snakemake(folder, *words):
+def snakemake(folder, *words, study="bends"):
     common = ["-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2"]
     given = [
         "--config",
-        f"studies=[{folder / 'bends'}]",
+        f"studies=[{folder / study}]",
         "--rerun-triggers",
         "mtime",
         "input",
@@ -294,6 +295,16 @@ def test_what_a_job_reads_of_runs_is_an_input_with_its_times(results):
     for files in read:
         runs = re.findall(r"[^ ,]*/\d+\.parquet", files)
         assert all(run.replace(".parquet", ".times.parquet") in files for run in runs)
+
+
+def test_a_further_study_joins_those_on_the_page(results):
+    with contextlib.chdir(results.parents[2]):
+        main(["new", "walks"])
+    printed = snakemake(results.parents[2], "-n", "all", study="walks")
+    for rule in ("summary", "page"):
+        (inputs,) = re.findall(rf"^rule {rule}:\n +input: (.*)$", printed, flags=re.M)
+        for study in ("bends", "walks"):
+            assert f"results/full/{study}/claims.csv" in inputs
 
 
 def test_numbers_of_all_studies_count_the_study(results):

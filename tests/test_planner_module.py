@@ -76,7 +76,6 @@ def test_command_whose_planner_exits_says_so(ends, tmp_path, monkeypatch, capsys
         ["check-planner", "none"],
         ["plan", "none.txt"],
         ["verify", "none"],
-        ["outcome", "none"],
     ],
 )
 def test_wrong_input_ends_every_command_with_status_2(words, tmp_path, monkeypatch, capsys):

@@ -113,12 +113,12 @@ def test_free_cells_of_song2016_are_those_with_a_number():
 # The maps of meledje and ma2020 are printed as pictures only. Those here are our own design:
 # SHA-256 of the files, noted when they were drawn.
 DIGESTS = {
-    "ma2020/environment1": "9abdd29a262538e6025466a9ab830e3bf959a1da490c78030dddbd4ae657d378",
-    "ma2020/environment2": "93bbabb6d478511e7bedc6f51df4f2ed0c277bb99daed01ac86560ea4d7a8ff5",
+    "ma2020/environment1": "334f3f839fe950b09d95bee6d60ec1d16929e700d0857da4019603fd64d72a92",
+    "ma2020/environment2": "e71b322765f751c9f20c40f6442439ab5fa6de1d2dc147224051ec4f08da45fa",
     "meledje/env1_initial": "6b8b33a0d27f269694b8940139bb8d63d5befe699189dd14d2d6dc364667325d",
     "meledje/env1_modified": "497a6bbf570625621a7b709cef136e30e77b704e034fe733c0e6fd84f47e8a6a",
-    "meledje/env2_initial": "bcfe338304cedaf30b0c0f72d242e0ef06e4fffbc14c2f92b8542e88031d97a2",
-    "meledje/env2_modified": "c17b8ba01a5c1b5ebbb87eea9bef6d5c01fb098b290b570872c4519d5cafb793",
+    "meledje/env2_initial": "08914ac402d2bad4883e4a4e837684d098444b7c6c84abeb842b424c442bc45e",
+    "meledje/env2_modified": "a81fd6240106ffd784568baf251a6cd2be1d3ec4367eafd396aaba8685f71560",
 }
 
 

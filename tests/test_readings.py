@@ -2,12 +2,12 @@
 
 import math
 
+import outcome
 import pandas as pd
 import pytest
 from studies import studies
 
 from bezierplan.analysis.claims import by_reading
-from bezierplan.analysis.outcome import outcome
 from bezierplan.places import TREE
 from bezierplan.study import alternatives, jobs
 
@@ -35,15 +35,17 @@ def test_a_value_changes_its_setting_on_its_problems_and_what_goes_along():
 
 def test_a_problem_keeps_its_own_value_under_one_that_is_not_of_it():
     study = STUDIES["ma2020"]
-    ants = chunk(alternatives.under(study, {"O14g": 10}), "environments", "aco_ga")
-    assert ants.settings["generations"] == 10
-    assert ants.problems["environment2"]["settings"]["generations"] == 100
+    genetic = study.methods["ga"].but(settings={"coding": "via_cells"})
+    study = study.but(methods=study.methods | {"ga": genetic})
+    made = chunk(alternatives.under(study, {"O14g": 10}), "environments", "ga")
+    assert made.settings["generations"] == 10
+    assert made.problems["environment2"]["settings"]["generations"] == 100
 
 
 @pytest.mark.parametrize(
     ("key", "values", "experiment", "shared"),
     [
-        ("ma2020", {"O14h": 50}, "environments", {"aco", "asfa", "bca", "bca_q"}),
+        ("ma2020", {"O14h": 100}, "environments", {"aco", "bca", "bca_q"}),
         ("meledje", {"M15b": 50}, "heights", {"random", "ref12", "ref21", "proposed"}),
         ("tharwat2018", {"O3b": 1.35}, "maps", set()),
         ("tharwat2018", {"O3b": 1.35}, "obstacles", {"cpso2_singer"}),
@@ -72,12 +74,12 @@ def test_no_best_known_path_counts_on_another_map():
 
 def test_the_runs_of_claims_are_those_that_their_checks_name():
     study = STUDIES["tharwat2018"]
-    claims = [claim for claim in study.claims if claim.id in ("C21", "C28")]
+    claims = [claim for claim in study.claims if claim.id in ("C21", "C27")]
     own = alternatives.with_claims(study, claims).experiments
     assert own["maps"].problems == ["equal"]
-    assert own["maps"].vary == {"profile": ["default"]}
     assert {*own["maps"].methods} < {*study.experiments["maps"].methods}
     assert own["control_points"].methods == ["cpso2_singer"]
+    assert own["control_points"].vary["particles"] == [20]
 
 
 def test_alternatives_have_few_runs_and_none_is_excluded():

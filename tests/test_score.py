@@ -10,10 +10,11 @@ from bezierplan.analysis.numbers import benchmark
 
 
 def test_summaries_count_free_runs_and_take_the_excess_of_these():
-    runs = pd.DataFrame({"problem": "a", "method": ["m"] * 3 + ["n"], "bound": 10.0})
+    runs = pd.DataFrame({"problem": "a", "method": ["m"] * 3 + ["n"], "shortest": 10.0})
     runs = runs.assign(length=[12.0, 1.0, 11.0, 11.2], feasible=[True, False, True, True])
-    rows = benchmark.summaries(runs.assign(evaluations=5)).set_index("method")
-    assert rows.loc["m"].to_list()[1:] == pytest.approx([3, 2 / 3, 0.15, 5])
+    runs = runs.assign(evaluations=5, curvature=1.0, cpu_s=2.0)
+    rows = benchmark.summaries(runs).set_index("method")
+    assert rows.loc["m"].to_list()[1:] == pytest.approx([3, 2 / 3, 11.5, 0.15, 1, 5, 2])
     # Free more often comes before shorter; of two problems the mean rank.
     other = rows.reset_index().assign(problem="b", feasible=1.0)
     ranks = benchmark.scores(pd.concat([rows.reset_index(), other]))["rank"]
@@ -43,7 +44,10 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
         "evaluations": 1,
     }
     pd.DataFrame(paths).to_csv(file, index=False)
-    rows = scored(file, "song2016/shortest_path", "--repeats", 1, "--problems", tmp_path / "p.csv")
+    made = f"--problems={tmp_path}/p.csv --out={tmp_path}/o.csv --plot={tmp_path}/p.svg".split()
+    rows = scored(file, "song2016/shortest_path", "--repeats", 1, *made)
+    assert pd.read_csv(tmp_path / "o.csv")["method"].to_list() == [*rows]
+    assert (tmp_path / "p.svg").read_text().count("15_240") == 1
     assert rows[f"here:{file}"] == rows["here:song2016/shortest_path"]
     listed = pd.read_csv(tmp_path / "p.csv")
     bounds = [bp.plan(each, "song2016/shortest_path").length for each in problems.values()]

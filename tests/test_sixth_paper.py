@@ -18,8 +18,6 @@ ROOT = Path(__file__).parents[1]
 # Of two layouts, as many as scale smoke has.
 VERDICTS = dict.fromkeys(("C1", "C4", "C5"), "undecided") | {"C6": "untestable"}
 VERDICTS |= dict.fromkeys(("C2", "C3"), "supported")
-# Where a paper is the source of a formula, a docstring or an example may name it.
-EXAMPLES = {"commands/outcome.py"}
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +34,7 @@ def test_the_engine_names_no_paper():
     package = ROOT / "src" / "bezierplan"
     for file in package.rglob("*.py"):
         place = file.relative_to(package).as_posix()
-        if place.split("/")[0] in ("papers", "planners") or place in EXAMPLES:
+        if place.split("/")[0] in ("papers", "planners"):
             continue
         text = re.sub(r'"""(.|\n)*?"""|#.*|"[^"\n]*such as [^"\n]*"', "", file.read_text())
         assert not named.search(text), place

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from fields import among_circles
 from studies import FOLDER as STUDIES
 from studies import KEYS, arguments, drawing, problem_of
 from studies import study as shared
@@ -74,7 +75,12 @@ def test_gauss_above():
     assert high - low < 0.01
 
 
-# Control points x, then y, and the fitness in both workspaces.
+# Three circles of one size, and of three sizes.
+WORLDS = {
+    "equal": among_circles([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]]),
+    "public": among_circles([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]]),
+}
+# Control points x, then y, and the fitness among both.
 FIXED = {
     "straight": ([1, 2, 3], [1.5, 3, 4.5], 118.766232, 95.050708),
     "far": ([6, 6, 6], [0, 3, 6], 10.665079, 10.665079),
@@ -89,7 +95,7 @@ FIXED = {
 def test_fitness(name, world, column):
     x, y, *_ = FIXED[name]
     path = np.array([[(0, 0), *zip(x, y), (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+    assert tharwat2018.fitness(path, WORLDS[world], SAMPLES, BETA)[0] == pytest.approx(
         FIXED[name][column], abs=2e-6
     )
 
@@ -107,12 +113,11 @@ def test_fitness_is_that_of_the_planner():
         ] == pytest.approx(plan.objective, rel=1e-12)
 
 
-@pytest.mark.parametrize(("world", "best"), [("equal", 7.7263), ("public", 7.5182)])
-def test_best_known_curves(world, best):
-    path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN[world], (4, 6)]], dtype=float)
-    # Their coordinates are rounded.
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
-        best, abs=3e-4
+def test_best_known_curve():
+    path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN, (4, 6)]], dtype=float)
+    # Its coordinates are rounded.
+    assert tharwat2018.fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
+        9.3436, abs=3e-4
     )
 
 
@@ -153,10 +158,7 @@ def on_maps(where):
     return SimpleNamespace(experiment="maps", where=where)
 
 
-@pytest.mark.parametrize(
-    ("world", "minima", "correlation"), [("equal", 7, -0.30), ("public", 5, -0.15)]
-)
-def test_landscape(world, minima, correlation):
+def test_landscape():
     """Numbers of an independent computation; the correlation is that of
     `bowl_with_local_minima`.
     """
@@ -165,35 +167,35 @@ def test_landscape(world, minima, correlation):
             {
                 "planner": "chaotic_pso",
                 "drew": True,
-                "problem": world,
-                "workspace": world,
+                "problem": "equal",
+                "workspace": "equal",
                 "samples": SAMPLES,
                 "beta": BETA,
             }
         ]
     )
-    found = Results(runs, {world: problem(world)}, pd.DataFrame())
+    found = Results(runs, {"equal": problem("equal")}, pd.DataFrame())
     surface = tharwat2018.landscape(found)
     side = tharwat2018.GRID
     assert len(surface) == side**2
     values = surface["objective"].to_numpy().reshape(side, side)
     assert values.min() >= math.dist((0, 0), (4, 6))
-    assert tharwat2018.local_minima(values).sum() == minima
+    assert tharwat2018.local_minima(values).sum() == 1
     place = surface.iloc[[17 * side + 150]]
-    points = np.array(tharwat2018.BEST_KNOWN[world])
+    points = np.array(tharwat2018.BEST_KNOWN)
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
     path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+    assert tharwat2018.fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
         place["objective"].iloc[0], rel=1e-12
     )
-    check = on_maps({"workspace": world})
+    check = on_maps({"workspace": "equal"})
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
-    assert effect == pytest.approx(correlation, abs=0.01)
+    assert effect == pytest.approx(0.17, abs=0.01)
     drawn = tharwat2018.fitness_landscape(found)
     assert drawn["part"].value_counts().to_dict() == {
         "node": side**2,
-        "minimum": 3,
+        "minimum": 1,
         "lowest": 1,
         "fixed": 2,
     }
@@ -227,12 +229,11 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     assert answer[1] > 0.5
 
 
-# Round the circles of the workspace `equal`: above all, below all, and between them as the best
-# known one.
+# Round the circles of the workspace `equal`: above all, below all, and between them.
 WAYS = {
     "above": [(-4, 2), (-2, 8), (2, 8)],
     "below": [(6, 0), (6, 3), (6, 6)],
-    "between": list(tharwat2018.BEST_KNOWN["equal"]),
+    "between": [(-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)],
 }
 
 
@@ -417,7 +418,8 @@ def test_the_default_of_an_assumption_is_what_the_study_uses():
     study = shared("ma2020")
     own = {each.id: alternatives.default_of(study, each) for each in study.assumptions}
     assert own["O2"] == study.settings["control_points"]
-    assert set(own["O14h"].values()) == {study.problems["environment2"].settings["generations"]}
+    assert own["O14h"]["ga"] == study.methods["ga"].settings["generations"]
+    assert own["O7"]["bca"] == study.settings["elitism"]
     turned = study.but(settings=study.settings | {"control_points": 5})
     assert not checks.Checks(turned).check()
     first = next(each for each in study.assumptions if each.id == "O2")

@@ -3,10 +3,11 @@
 import re
 
 import numpy as np
+import outcome
 import pandas as pd
 import pytest
 
-from bezierplan.analysis.outcome import outcome, verdict
+from bezierplan.analysis.outcome import verdict
 from bezierplan.commands import studies_of
 from bezierplan.places import TREE
 

@@ -1,6 +1,7 @@
 """Columns of printed means judged as wholes: level, spread, order and deviations."""
 
 import numpy as np
+import outcome
 import pandas as pd
 import pytest
 from pivots import pivot_of
@@ -8,7 +9,6 @@ from scipy import stats
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.numbers import comparison, wholes
-from bezierplan.analysis.outcome import outcome
 from bezierplan.analysis.results import Results
 from bezierplan.places import TREE
 from bezierplan.workspaces.grid import from_lines

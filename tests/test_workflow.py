@@ -27,7 +27,7 @@ from bezierplan.analysis.run_tables import run_tables, table_digest
 
 ROOT = Path(__file__).parents[1]
 # Those of the paper, and the baseline that all studies share.
-GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single")
+GENETIC = ("nonsmooth", "smooth", "smooth_quadratic", "smooth_single")
 METHODS = (*GENETIC, "rounded")
 TRIGGERS = yaml.safe_load((ROOT / "profiles/default/profile.yaml").read_text())["rerun-triggers"]
 

@@ -73,6 +73,10 @@ POLYGON_FAULTS = {
         json.dumps({"features": [], "crs": {"properties": {"name": "urn:ogc:def:crs:OGC::CRS84"}}}),
         "crs: longitudes and latitudes, in degrees; expected x and y as lengths",
     ),
+    "degrees": (
+        geojson(border=closed((13.377, 52.516), (13.379, 52.516), (13.379, 52.517))),
+        "places about 13.377, 52.516 with an extent of 0.002 look like degrees; expected x and y",
+    ),
     "border crossing itself": (
         geojson(border=closed((0, 0), (10, 10), (10, 0), (0, 10))),
         r"feature 0 \(border\): Self-intersection",

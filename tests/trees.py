@@ -29,8 +29,8 @@ SMALL = {
     "population: 20200": "population: 60",
     "repeats: {smoke: 2, full: 100, extended: 250}": "repeats: {smoke: 2, full: 4, extended: 8}",
     "chunk: {smoke: 2, full: 50, extended: 125}": "chunk: {smoke: 2, full: 2, extended: 4}",
-    "smooth_cubic: 125, smooth_single: 125, shortest_path: 125, straight_line: 125, rounded: 125, "
-    "random_search: 125": "smooth_single: 4",
+    "smooth_quadratic: 125, smooth_single: 125, shortest_path: 125, straight_line: 125, "
+    "rounded: 125, random_search: 125": "smooth_single: 4",
 }
 
 

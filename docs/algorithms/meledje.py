@@ -23,10 +23,10 @@ def plan(
     friction=1.0,
     most_nodes=12,
     generations=100,
-    stall=20,
 ):
-    """Nodes (n, 2) of the best path of the last generation, in units, and the lowest fitness so far
-    after each generation (generations done + 1,). From the start the target must not be visible.
+    """Return the nodes (n, 2) of the best path of the last generation, in units, and the lowest
+    fitness so far after each generation (generations + 1,). From the start the target must not be
+    visible.
     """
     grid = problem.workspace
     ground = ground_of(grid, friction)  # eq. 2: epsilon = energy[i, j]; eq. 3: beta = met[i, j]
@@ -44,13 +44,13 @@ def plan(
         return np.cumsum([energy[e] for e in edges])[-1] + weight * sum(int(beta[e]) for e in edges)
 
     paths = [first_path(starts, start, target, free, beta, most_nodes) for _ in range(population)]
-    lowest, improved, history = np.inf, 0, []
+    lowest, history = np.inf, []
     for generation in range(generations + 1):
         values = np.array([fitness(path) for path in paths])
         if values.min() < lowest - 1e-9:
-            lowest, improved = values.min(), generation
+            lowest = values.min()
         history.append(lowest * grid.cell)
-        if generation - improved >= stall or generation == generations:
+        if generation == generations:
             break
         # Section 2.5: parents by a roulette wheel over ranks.
         order = np.argsort(values, kind="stable")
@@ -77,8 +77,8 @@ def below(rng, count):
 
 
 def first_path(rng, start, target, free, beta, most_nodes):
-    """Section 2.3: a random feasible path. From each node to a random visible cell that is not yet
-    part of it, until the target is visible; once more from the start if it gets too long.
+    """Return a random feasible path (Section 2.3): from each node to a random visible cell that is
+    not yet part of it, until the target is visible; once more from the start if it gets too long.
     """
     path = [start]
     while beta[path[-1], target] > 0:

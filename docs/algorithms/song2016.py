@@ -21,10 +21,10 @@ def plan(
     mutation_probability=0.1,
     penalty=10.0,  # for each sample in an occupied cell
     genes=6,  # eight control points with start and target
-    samples=601,
+    samples=501,
 ):
-    """Control points (genes + 2, 2) of the shortest path, in units, and the lowest objective, the
-    reciprocal of the fitness, after each generation (generations + 1,).
+    """Return the control points (n, 2) of the shortest path, in units, and the lowest objective,
+    the reciprocal of the fitness, after each generation (generations + 1,).
     """
     grid = problem.workspace
     occupied = embed(grid.occupied)  # Remark 1: sides are powers of two
@@ -53,8 +53,10 @@ def plan(
                 mutation(moves, chromosome)
         chromosomes[0] = best  # elitism, which the paper leaves open
     found = grid.in_units(control_points(best[None], bits, occupied.shape[1], ends)[0])
-    found[[0, -1]] = problem.start, problem.target
-    return found, np.array(history)
+    # Remark 3: of control points that coincide one remains.
+    start, *inner, target = problem.start, *map(tuple, found[1:-1].tolist()), problem.target
+    rest = [point for point in dict.fromkeys(inner) if point not in (start, target)]
+    return np.array([start, *rest, target]), np.array(history)
 
 
 def control_points(chromosomes, bits, columns, ends):
@@ -74,17 +76,14 @@ def objectives(points, occupied, penalty, samples):
     """The reciprocal of the fitness (eq. 9) of each path: the sum of the lengths of its segments,
     and the penalty for each sample in an occupied cell.
     """
-    pieces = points.shape[1] - 2  # quadratic segments, joined with a common tangent (Section II)
-    weights = sample_matrix("piecewise_quadratic", pieces + 2, samples)
+    pieces = points.shape[1] - 3  # cubic segments, with a continuous second derivative (eq. 6)
+    weights = sample_matrix("piecewise_cubic", pieces + 3, samples)
     step = (samples - 1) // pieces
     length, bad = np.zeros(len(points)), np.zeros(len(points), dtype=int)
     for i in range(pieces):
-        w = weights[i * step : (i + 1) * step + 1, i : i + 3]
-        p = points[:, None, i : i + 3]
-        x, y = (
-            w[:, 0] * p[..., 0, axis] + w[:, 1] * p[..., 1, axis] + w[:, 2] * p[..., 2, axis]
-            for axis in (0, 1)
-        )  # eqs. 1 and 2
+        w = weights[i * step : (i + 1) * step + 1, i : i + 4]
+        p = points[:, None, i : i + 4]
+        x, y = (sum(w[:, k] * p[..., k, axis] for k in range(4)) for axis in (0, 1))  # eqs. 1 and 2
         chords = np.sqrt(np.diff(x) ** 2 + np.diff(y) ** 2)
         length += np.cumsum(chords, axis=1)[:, -1]
         column, row = (x[:, 1:] + ON_LINE).astype(int), (y[:, 1:] + ON_LINE).astype(int)  # eq. 8

@@ -20,7 +20,7 @@ def plan(
     stall_limit=10,  # Section 4.2.1
     c1=1.5,  # C1, C2
     c2=1.5,
-    inertia=1.0,  # w
+    inertia=0.7298,  # w, which is not printed
     control_points=3,  # Section 5.1
     samples=100,
     beta=100.0,
@@ -42,21 +42,20 @@ def plan(
     v, p, p_fitness = np.zeros_like(x), x.copy(), np.full(particles, np.inf)
     G, G_fitness, history = None, np.inf, []
     for t in range(iterations + 1):  # line 2
-        if t > 0:
-            r1, r2 = moves.random(2)
-            if chaotic_term == "social":
-                r2 = zeta[t - 1]
-            else:
-                r1 = zeta[t - 1]
         for i in range(particles):  # line 3
-            if t > 0:  # line 11 of the iteration before
-                v[i] = inertia * v[i] + c1 * r1 * (p[i] - x[i]) + c2 * r2 * (G - x[i])  # eq. 8
-                x[i] = np.clip(x[i] + v[i], low, high)  # eq. 7; the velocity stays
             value = fitness(x[i], problem, weights, circles, beta)  # line 4
             if value < p_fitness[i]:  # lines 5 to 7
                 p[i], p_fitness[i] = x[i], value
             if value < G_fitness:  # lines 8 to 10
                 G, G_fitness, improved = x[i].copy(), value, t
+            if t < iterations:  # line 11
+                r1, r2 = moves.random(2)
+                if chaotic_term == "social":
+                    r2 = zeta[t]
+                else:
+                    r1 = zeta[t]
+                v[i] = inertia * v[i] + c1 * r1 * (p[i] - x[i]) + c2 * r2 * (G - x[i])  # eq. 8
+                x[i] = np.clip(x[i] + v[i], low, high)  # eq. 7; the velocity stays
         history.append(G_fitness)
         if t - improved == stall_limit:  # line 13
             break
@@ -65,12 +64,12 @@ def plan(
 
 
 def singer(rng, length, mu):
-    """The chaotic sequence (length,) of eq. 10, whose last coefficient is rounded in print, from a
-    random start from which it does not die, held in [0, 1].
+    """The chaotic sequence (length,) of eq. 10, from a random start from which it does not die,
+    held in [0, 1].
     """
 
     def following(x):
-        return mu * x * (7.86 + x * (-23.31 + x * (28.75 - 13.302875 * x)))
+        return mu * x * (7.86 + x * (-23.31 + x * (28.75 - 13.3 * x)))
 
     while True:
         before = x = start = rng.random()

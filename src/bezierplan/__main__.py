@@ -13,7 +13,7 @@ from typing import NoReturn
 
 import bezierplan
 from bezierplan.commands import arguments
-from bezierplan.places import EXTRA, PACKAGE
+from bezierplan.places import EXTRA, PACKAGE, extra
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, closest
 
@@ -47,12 +47,13 @@ def main(words: list[str]) -> None:
         elif name not in COMMANDS:
             _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
         else:
-            command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
-            functions = getattr(command, "PASSES_ON", ())
-            if name == "run" and {"-h", "--help"}.isdisjoint(rest):  # most words are Snakemake's
-                command.main(*rest)
-            else:
-                arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
+            with extra():
+                command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
+                functions = getattr(command, "PASSES_ON", ())
+                if name == "run" and {"-h", "--help"}.isdisjoint(rest):  # most are Snakemake's
+                    command.main(*rest)
+                else:
+                    arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
         sys.stdout.flush()
     # The reader, such as `head`, has enough; Python flushes once more when it exits.
     except BrokenPipeError:
@@ -62,10 +63,7 @@ def main(words: list[str]) -> None:
     except ModuleNotFoundError as missing:
         if missing.name not in EXTRA:
             raise
-        _refuse(
-            f"{name}: needs {missing.name}, which is not installed; install it with: pip install "
-            "'bezierplan[workflow]'"
-        )
+        _refuse(f"{name}: {missing}")
     except (ValueError, OSError) as fault:
         # What the operating system says names the file last, and an error number first.
         file = getattr(fault, "filename", None)

@@ -9,16 +9,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from functools import cache
+from functools import cache, partial
 from pathlib import Path as File
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType, ModuleType
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from bezierplan.analysis import answers
+from bezierplan.figures import drawn_path, style
 from bezierplan.geometry import path_files, samples, shortest_paths
-from bezierplan.places import STUDIES
+from bezierplan.places import STUDIES, extra
 from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import planning
 from bezierplan.running import problems as problem_files
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Method = str | Callable[..., Any] | ModuleType
+Entry = Method | None | tuple[Method | None, Mapping[str, Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,19 +125,25 @@ class Judgement:
             raise ValueError("no path was found, so there is nothing to sample or to write")
         return samples.along(self.path, n, step)
 
-    def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are
-        returned.
+    def plot(self, axes: Axes | None = None, *, map: bool = True, **look: Any) -> Axes:
+        """Draw the path on its map, with the exact shortest path.
+
+        Parameters
+        ----------
+        axes : Axes, optional
+            Matplotlib's, by default new ones.
+        map : bool
+            Whether the map, its ends and the exact shortest path are drawn as well.
+        **look
+            Properties of the path's line, such as `label` and `color`.
+
+        Returns
+        -------
+        Axes
         """
-        from bezierplan.figures import drawn_path
-
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.figure(layout="constrained").add_subplot()
         problem = self.problem._replace(workspace=original(self.problem.workspace))
-        drawn_path.draw(axes, problem, self.path, self.shortest_points, self.collision)
-        return axes
+        parts = self.path, self.shortest_points, self.collision
+        return drawn_path.draw(problem, axes, *parts, map=map, **look)
 
     def save(self, file: str | File, *, step: float | None = None) -> None:
         """Write the path into a file of the kind that its suffix names.
@@ -164,15 +172,11 @@ class Judgement:
         elif file.suffix == ".json":
             path_files.write_json(file, values | {"gap": self.gap})
         else:
-            from bezierplan.figures import drawn_path
-
             drawn_path.save(file, self.plot)
 
     def _repr_html_(self) -> str:
         """The picture and what the command line prints, for notebooks."""
-        from bezierplan.figures import drawn_path
-
-        return drawn_path.html(self.plot, answers.lines(self))
+        return drawn_path.html(answers.rows(self), self.plot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,14 +207,99 @@ class Answer(Judgement):
     """
 
     method: str
-    settings: dict[str, Any]
+    settings: dict[str, Any] = field(default_factory=dict)
     claimed_feasible: bool
     objective: float
     evaluations: int
     history: np.ndarray = field(repr=False)
     stop: str
-    turning_radius: float
+    turning_radius: float = math.nan
     cpu_s: float = math.nan
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Answers of several methods to the same problems.
+
+    Attributes
+    ----------
+    answers : dict of str to list of Answer
+        By the label of the method, in the order of problems and seeds.
+    """
+
+    answers: dict[str, list[Answer]]
+
+    @property
+    def runs(self) -> pd.DataFrame:
+        """The fields of all answers, a row each: method (its label), problem (its name), and the
+        others.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(
+            vars(each) | {"method": label, "problem": each.problem.name}
+            for label, own in self.answers.items()
+            for each in own
+        )
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """A row for each method, the best one first.
+
+        Columns: problems; runs; feasible, the share of runs whose path is free; of these the
+        medians of length, excess (over the exact shortest path, as a share) and curvature; of all
+        runs the medians of evaluations and cpu_s; rank, the mean one on a problem: by the share of
+        free paths, and of equal shares by the excess.
+        """
+        from bezierplan.analysis.numbers import benchmark
+
+        return benchmark.scores(benchmark.summaries(self.runs))
+
+    def plot(self, axes: Axes | None = None, problem: str = "") -> Axes:
+        """Draw the best path of each method on one map, with a legend: the shortest free one.
+
+        Parameters
+        ----------
+        axes : Axes, optional
+            Matplotlib's, by default new ones.
+        problem : str, optional
+            Its name, by default that of the first one.
+
+        Returns
+        -------
+        Axes
+        """
+        draws = self._draws()
+        problem = problem or next(iter(draws))
+        check_known(problem, draws, "problem")
+        axes = draws[problem](axes)
+        drawn_path.add_legend(axes.figure)
+        return axes
+
+    def save(self, file: str | File) -> None:
+        """Save what `plot` draws of each problem, at most 12 of them, as a picture (.svg, .png,
+        .pdf).
+        """
+        drawn_path.save(File(file), *self._draws().values())
+
+    def _draws(self) -> dict[str, partial]:
+        """Return what draws each problem, by name."""
+        names = (each.problem.name for own in self.answers.values() for each in own)
+        return {name: partial(self._draw, name) for name in names}
+
+    def _draw(self, problem: str, axes: Axes | None) -> Axes:
+        looks = style.lines([*self.answers], style.LOOK_OF_PLANNER)
+        for number, (label, answered) in enumerate(self.answers.items()):
+            own = [each for each in answered if each.problem.name == problem]
+            best = max(own, key=lambda each: (each.feasible, each.path is not None, -each.length))
+            named = {"label": label + " (no free path)" * (not best.feasible), "marker": ""}
+            axes = best.plot(axes, map=not number, **looks[number] | named)
+            axes.set_title(problem)
+        return axes
+
+    def _repr_html_(self) -> str:
+        """The picture and the table, for notebooks."""
+        return drawn_path.html(self.table.to_html(float_format="%.4g"), *self._draws().values())
 
 
 def read_map(
@@ -405,53 +494,125 @@ def plan(
     (True, 8.416, 0.0015)
     >>> wide = plan(problem, robot_radius=0.5)
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
-    (True, 9.156, 0.5)
+    (True, 9.247, 0.5)
     """
-    if not _are_numbers(seed) or seed < 0 or seed % 1:
-        raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
-    _check_problem(problem)
+    (answer,) = answers_to([problem], method, 1, seed, robot_radius, via, settings)
+    return answer
+
+
+def compare(
+    problem: Problem | Mapping[str, Problem],
+    methods: Sequence[Entry] | Mapping[str, Entry],
+    *,
+    repeats: int = 20,
+    **options: Any,
+) -> Comparison:
+    """Plan by several methods, and judge all paths by exact geometry.
+
+    Parameters
+    ----------
+    problem : Problem or dict of str to Problem
+        One, or several such as `problems` gives.
+    methods : sequence or dict
+        Each as in `plan`, or a pair of a method and its settings; with labels as keys, or under
+        their names.
+    repeats : int
+        Runs of each method on each problem; one of a method that draws no random numbers.
+    **options
+        `seed` of the first run (the next one has the next), `robot_radius` and `via`, as in `plan`.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        As `plan` does.
+    TypeError
+        As `plan` does.
+
+    Examples
+    --------
+    >>> wall = np.zeros((8, 8), dtype=bool)
+    >>> wall[2:6, 3:5] = True
+    >>> room = Grid(wall, cell=1.0, unit="m")
+    >>> problem = Problem("a block", room, start=(0.5, 4.0), target=(7.5, 4.0))
+    >>> compared = compare(problem, ["shortest_path", "straight_line"])
+    >>> compared.table["feasible"].to_dict()
+    {'shortest_path': 1.0, 'straight_line': 0.0}
+    """
+    asked = [problem]
+    if isinstance(problem, Mapping):
+        asked = [each._replace(name=name) for name, each in problem.items()]
+    pairs = methods.items() if isinstance(methods, Mapping) else ((None, each) for each in methods)
+    answers: dict[str, list[Answer]] = {}
+    for label, entry in pairs:
+        method, settings = entry if isinstance(entry, tuple) else (entry, {})
+        label = label or _name(method)
+        if label in answers:
+            raise ValueError(f"methods: {label}: twice; expected a dict with a label for each")
+        answers[label] = answers_to(asked, method, repeats, settings=settings, **options)
+    return Comparison(answers)
+
+
+def answers_to(
+    problems: Sequence[Problem],
+    method: Method | None,
+    repeats: int,
+    seed: int = 0,
+    robot_radius: float = 0.0,
+    via: Sequence[tuple[float, float]] = (),
+    settings: Mapping[str, Any] = MappingProxyType({}),
+) -> list[Answer]:
+    """Return the answers of a method to problems, with `repeats` seeds in a row for each of these,
+    if it draws random numbers.
+
+    Raises ValueError and TypeError as `plan` does.
+    """
+    for name, value, least in (("seed", seed, 0), ("repeats", repeats, 1)):
+        if not _are_numbers(value) or value < least or value % 1:
+            raise ValueError(f"{name}: {value!r}; expected a whole number of at least {least}")
     if not _are_numbers(robot_radius):
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
     if np.shape(via) != (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
-    name, planner, module, preset = _planner(method)
+    label, (planner, module, preset) = _name(method), _planner(method)
     if planner == planning.ROUNDED:
         preset |= planning.rounding(settings)
     if places and planner not in planning.CHAINED:
-        raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {name}")
+        raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {label}")
     settings = preset | {
         name: each.item() if isinstance(each, np.generic) else each
         for name, each in settings.items()
     }
-    grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
-    placed = problem_files.placed(grown, getattr(module, "workspaces", None))
-    check_settings(name, module, settings, placed)
-    parts = planning.legs(placed, places)
-    shortest, label = planning.shortest(parts), f"method: {name}"
+    runs: list[planning.Run] = []
+    for problem in problems:
+        _check_problem(problem)
+        grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
+        home = problem_files.placed(grown, getattr(module, "workspaces", None))
+        check_settings(label, module, settings, home)
+        legs = planning.legs(home, places)
+        which = f"method: {label}" + f": {problem.name}" * (len(problems) > 1)
+        run = planning.Run(which, home, legs, planning.shortest(legs), settings, int(seed))
+        again = 1 if getattr(module, "deterministic", False) else int(repeats)
+        runs += [run._replace(seed=run.seed + number) for number in range(again)]
+    found: list[Answer] = []
     try:
-        answer, cpu_s = planning.planned(
-            label, module.plan, parts, settings, int(seed), planner if is_file(planner) else ""
-        )
-        judged = answers.verdict(placed, shortest, answer.path)
+        for run, plan, cpu_s in planning.plans(module.plan, runs, planner * is_file(planner)):
+            judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
+            if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
+                raise ValueError(
+                    f"its path is {judged['length']:.12g} long and feasible, but no free path is "
+                    f"shorter than {run.bound.length:.12g}: the checker or the bound is wrong"
+                )
+            found.append(Answer(**judged, method=label, settings=settings, via=places, cpu_s=cpu_s))
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
-        raise ValueError(f"{label}: {fault}") from None
-    if judged.get("feasible") and judged["length"] < shortest_paths.least_length(shortest):
-        raise ValueError(
-            f"{label}: its path is {judged['length']:.12g} long and feasible, but no free path is "
-            f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
-        )
-    return Answer(
-        **judged,
-        **{field: getattr(answer, field) for field in (*answers.OF_PLANNERS, "history")},
-        via=places,
-        turning_radius=answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan,
-        method=name,
-        settings=settings,
-        cpu_s=cpu_s,
-    )
+        raise ValueError(f"{runs[len(found)].label}: {fault}") from None
+    return found
 
 
 def plan_all(
@@ -509,23 +670,29 @@ def _are_numbers(values: Any, *shape: int) -> bool:
     return array.dtype.kind in "fiu" and array.shape == shape
 
 
-def _planner(method: Method | None) -> tuple[str, str, Any, dict[str, Any]]:
-    """Of a method: how messages call it, its planner as a name of this package or a file (empty for
-    others), the planner's module, and settings.
+def _name(method: Method | None) -> str:
+    """Return how messages call a method."""
+    if method is None or isinstance(method, str):
+        return method or planning.ROUNDED
+    return getattr(method, "__name__", repr(method))
+
+
+def _planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
+    """Return, of a method, its planner as a name of this package or a file (empty for others), the
+    planner's module, and settings.
     """
     if method is None or method == planning.ROUNDED:
-        module = planner_module(planning.ROUNDED)
-        return planning.ROUNDED, planning.ROUNDED, module, {}
+        return planning.ROUNDED, planner_module(planning.ROUNDED), {}
     if isinstance(method, str):
         planner, preset = named(method)
-        return method, planner, interface.loaded(planner, f"method: {method}"), preset
-    name, module = getattr(method, "__name__", repr(method)), method
+        return planner, interface.loaded(planner, f"method: {method}"), preset
+    module = method
     if not isinstance(method, ModuleType):
         module = ModuleType("planner_of_a_program")
         module.plan = method
     if fault := interface.interface_fault(module):
-        raise TypeError(f"method: {name}: {fault}")
-    return name, "", module, {}
+        raise TypeError(f"method: {_name(method)}: {fault}")
+    return "", module, {}
 
 
 def named(method: str) -> tuple[str, dict[str, Any]]:
@@ -538,11 +705,11 @@ def named(method: str) -> tuple[str, dict[str, Any]]:
     if is_file(method):
         return method, {}
     if method in known_planners():
-        uses = [use for use, planner in methods().items() if planner == method]
+        uses = [use for use, planner in _planners().items() if planner == method]
         return named(uses[0]) if uses else (method, {})
     key, _, name = method.rpartition("/")
     if not (key and (_folder(key) / "experiments.yaml").is_file() and name in _study(key).methods):
-        known = [*methods(), *known_planners()]
+        known = [*_planners(), *known_planners()]
         raise ValueError(f"method: {method}: unknown{closest(method, known)}")
     return _study(key).planner(name), _study(key).resolved(name)
 
@@ -580,14 +747,31 @@ def check_settings(name: str, module: Any, settings: Mapping[str, Any], problem:
         interface.asked(module.serves, f"method: {name}", problem)
 
 
-def methods() -> dict[str, str]:
-    """The methods of the project's studies: ``"study/method"`` -> planner.
+def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
+    """Return the methods that the papers propose: ``"study/method"`` -> the kinds of map that it
+    serves.
+
+    Parameters
+    ----------
+    all : bool
+        Whether to return all methods of the studies: rivals, variants and baselines as well.
 
     Examples
     --------
     >>> methods()["song2016/smooth"]
-    'binary_genetic'
+    ('grid',)
     """
+    compared = {key: _study(key).baseline_comparison for key in _keys()}
+    proposed = [f"{key}/{each.proposed}" for key, each in compared.items() if each]
+    return {
+        name: tuple(getattr(planner_module(planner), "workspaces", interface.KINDS.values()))
+        for name, planner in _planners().items()
+        if all or name in proposed
+    }
+
+
+def _planners() -> dict[str, str]:
+    """Return the planners of all methods of the project's studies, by ``"study/method"``."""
     return {
         f"{key}/{name}": _study(key).planner(name)
         for key in _keys()
@@ -641,7 +825,8 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
-    from bezierplan.analysis.results import of_folder
+    with extra():
+        from bezierplan.analysis.results import of_folder
 
     return of_folder(File(folder), experiment).runs
 
@@ -664,7 +849,8 @@ def replay(run: str) -> Answer:
         States the unknown part of the name; a drive through a moving world has no single path and
         is replayed at the command line.
     """
-    from bezierplan.study import replays
+    with extra():
+        from bezierplan.study import replays
 
     reproduced = replays.replay(run, {key: _study(key) for key in _keys()})
     if reproduced.worlds:
@@ -675,3 +861,13 @@ def replay(run: str) -> Answer:
 def answer_of(rerun: Any, run: str) -> Answer:
     """The answer in the results of one run, by its name."""
     return Answer(**answers.of_run(rerun, run))
+
+
+def _html(shown: Problem | Workspace) -> str:
+    """Return the picture of a map or a problem, for notebooks."""
+    return drawn_path.html("", partial(drawn_path.draw, shown))
+
+
+# Maps and problems lie in a layer below that of figures.
+for shown in (Problem, *get_args(Workspace)):
+    shown.plot, shown._repr_html_ = drawn_path.draw, _html

@@ -1,6 +1,8 @@
 """Where things lie: this package, the tree of studies and workflow, the folder of caches."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -17,6 +19,23 @@ STUDIES = TREE / "config" / "studies"
 
 EXTRA = frozenset(("jinja2", "pyarrow", "seaborn", "snakemake"))
 """Libraries of the extra `workflow`: those that run whole studies."""
+
+
+@contextmanager
+def extra() -> Iterator[None]:
+    """A block that imports what may need a library of the extra `workflow`. Raises
+    ModuleNotFoundError that says how to install it.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as missing:
+        if missing.name not in EXTRA:
+            raise
+        raise ModuleNotFoundError(
+            f"needs {missing.name}, which is not installed; install it with: pip install "
+            "'bezierplan[workflow]'",
+            name=missing.name,
+        ) from None
 
 
 def cache_folder() -> Path:

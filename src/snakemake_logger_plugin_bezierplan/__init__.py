@@ -1,6 +1,6 @@
 """Output of Snakemake while it works: in a terminal the rich logger's progress bars, without one a
-line every 15 seconds or less often. At the end: the place of the results, the time taken and the
-outcome, or for each failed job one line with the reason.
+line every 15 seconds or less often. At the end: what was made, where it is, and the time taken; or
+why jobs failed, a line for each fault.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
 one.
@@ -9,6 +9,7 @@ one.
 import re
 import time
 from datetime import timedelta
+from itertools import takewhile
 from logging import LogRecord
 from pathlib import Path
 
@@ -25,8 +26,12 @@ LOCKED = (
     "works, free it by `snakemake --unlock` and "
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
+NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
+"""How messages begin that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
+MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
+"""What is counted at the end, by the end of a file of it."""
 BETWEEN_LINES = 15.0
 """Least time between two lines of progress without a terminal, in seconds."""
 
@@ -36,6 +41,9 @@ class LogHandler(RichHandler):
         super().__post_init__()
         self.progress.columns += (MofNCompleteColumn(), TimeRemainingColumn())
         self.progress.speed_estimate_period = 24 * 3600  # the usual 30 s are shorter than a job
+        if not self.console.is_terminal:
+            # They would leave blank lines.
+            self.live_display.start = self.progress.stop = lambda: None
         self.started = self.last_line = time.monotonic()
         self.outputs: set[Path] = set()
         # By job, for one that succeeds when it is tried again has not failed; None: of no job.
@@ -57,7 +65,11 @@ class LogHandler(RichHandler):
             self.reasons[job] = reason
             return
         # A job's own log says why it failed, and where the rest of its account stands.
-        if fault == "RuleException" or (event is None and message.startswith("Elapsed time: ")):
+        if fault == "RuleException" or (event is None and message.startswith(NOISE)):
+            return
+        done = self.event_handler.completed == self.event_handler.total_jobs
+        if "Complete log" in message and done:
+            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -68,23 +80,19 @@ class LogHandler(RichHandler):
             self.reasons.pop(record.job_id, None)
             if not self.console.is_terminal:
                 self.show_progress()
-        elif (
-            "Complete log" in message
-            and self.event_handler.completed == self.event_handler.total_jobs
-        ):
-            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
 
     def say(self, *lines: str) -> None:
         for line in lines:
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def reason_of(self, job: int) -> str:
-        """Why a job failed, as the last line of its log says; if it does not, where the log is."""
+        """Why a job failed, as the last lines of its log say; if they do not, where the log is."""
         logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
         for log in map(Path, logs):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
-            if lines and REASON in lines[-1]:
-                return lines[-1].partition(REASON)[2]
+            last = [*takewhile(lambda line: REASON in line, reversed(lines))]
+            if last:
+                return "\n".join(line.partition(REASON)[2] for line in reversed(last))
         return f"job {job} failed, and its log does not say why (log: {', '.join(logs)})"
 
     def close(self) -> None:
@@ -98,15 +106,24 @@ class LogHandler(RichHandler):
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
-            self.last_line = now
-            self.say(f"{done} of {total} jobs done, {in_hours(now - self.started)} elapsed")
+            self.last_line, taken = now, now - self.started
+            share = 100 * done // total
+            # The first jobs say little of the others.
+            left = f", about {in_hours(taken * (total / done - 1))} left" * (5 <= share < 100)
+            self.say(f"{share} %: {done} of {total} jobs, {in_hours(taken)} elapsed{left}")
 
 
 def last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """Where the results are, how long it took, and last the page."""
+    """What was made, where the results are, how long it took, and last the page."""
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
-    lines = [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    made = [
+        f"{count} {what}{'s' * (count > 1)}"
+        for what, ending in MADE.items()
+        if (count := sum(file.name.endswith(ending) for file in outputs))
+    ]
+    lines = [f"Made: {', '.join(made)}"] if made else []
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []

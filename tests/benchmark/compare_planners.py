@@ -11,8 +11,8 @@ Budgets double from one attempt to the next, so times are known to a factor of t
   motion is exact (`ompl_planners`) but called in Python: a program in C++ would take less time than
   is stated here.
 * A study's planners run anew for each number of generations, with the same seed. The best of all
-  budgets so far counts, for some keep no best path. Settings are those of the study; tharwat2018's
-  swarm has those of its profile `tuned`, and never stops early.
+  budgets so far counts, for some keep no best path. Settings are those of the study, but
+  tharwat2018's swarm never stops early.
 * `rounded` knows the exact shortest path and rounds its corners; its CPU time includes that of
   finding the shortest path.
 
@@ -57,7 +57,7 @@ BASELINE = "rounded"
 
 class Contest(NamedTuple):
     """A problem of a study with two of its planners. budget: the setting that says how long they
-    search. values: of the factors that the experiment varies. changes: other settings.
+    search. changes: other settings.
     """
 
     study: str
@@ -65,19 +65,17 @@ class Contest(NamedTuple):
     problem: str
     methods: tuple[str, str]
     budget: str
-    values: Mapping[str, str] = MappingProxyType({})
     changes: Mapping[str, Any] = MappingProxyType({})
 
 
-TUNED = {"profile": "tuned"}
 CONTESTS = [
     Contest("song2016", "routes", "15_240", ("nonsmooth", "smooth"), "generations"),
     Contest("meledje", "operators", "env2_modified", ("random", "proposed"), "generations"),
     Contest("ma2020", "environments", "environment2", ("bca", "bca_q"), "generations"),
     Contest("elhoseny2017", "maps", "hidden_u", ("mga", "mga_c"), "iterations"),
     Contest(
-        *("tharwat2018", "maps", "public", ("pso", "cpso2_singer"), "iterations"),
-        *(TUNED, {"stall_limit": 0}),
+        *("tharwat2018", "maps", "equal", ("pso", "cpso2_singer"), "iterations"),
+        {"stall_limit": 0},
     ),
 ]
 
@@ -111,7 +109,7 @@ def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Att
     """Runs of a study's method, one for each share of its own budget."""
     contest = at.contest
     job = jobs.job(at.study, contest.experiment, method, "full", 0)
-    condition = Condition(contest.problem, dict(contest.values))
+    condition = Condition(contest.problem, {})
     settings, planner = execution.settings_in(job, condition), planner_module(job.planner)
     budget = settings.get(contest.budget)
     if budget:

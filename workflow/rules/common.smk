@@ -59,15 +59,26 @@ def targets():
     return [*words.targets, *(job.wildcards_dict.get("study", "all") for job in jobs)]
 
 
+# What a module that uses this workflow puts before each path of results: for the page, which looks
+# what there is. Snakemake tells it nowhere else.
+PREFIX = workflow.modifier.path_modifier.prefix or ""
+# Files of a whole scale are of the studies that are asked for, and of those that they show already.
+PAGES = {scale: reading.on_page(f"{PREFIX}results/{scale}") for scale in experiments.SCALES}
+FOLDERS = or_exit(reading.read_config, config)
 # A target of one study starts without the others.
-STUDIES = or_exit(lambda: reading.load(reading.asked(reading.read_config(config), targets())))
+NAMED = reading.asked(FOLDERS, targets())
+ASKED = or_exit(reading.load, NAMED)
+SHOWN = {key: word for listed in PAGES.values() for key, word in listed.items() if key not in ASKED}
+STUDIES = ASKED | (reading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
+# In the order in which they came.
+OF_SCALE = {
+    scale: {key: STUDIES[key] for key in {**listed, **ASKED} if key in STUDIES}
+    for scale, listed in PAGES.items()
+}
 # Snakemake puts the path of its interpreter into commands unquoted, and a folder may have any name.
 # Planners of studies, which that interpreter reads, are known by now.
 sys.executable = shlex.quote(sys.executable)
 RESULTS = "results/{scale}/{study}"
-# What a module that uses this workflow puts before each path of results: for the page, which looks
-# what there is. Snakemake tells it nowhere else.
-PREFIX = workflow.modifier.path_modifier.prefix or ""
 
 
 UNDER = {
@@ -138,7 +149,7 @@ def files_in(scale, folder, study=None):
     """Files of all tables and figures of one tree: of a study, or of all."""
     return [
         file
-        for own in STUDIES.values()
+        for own in OF_SCALE[scale].values()
         if study in (None, own.key)
         for name in own.named(folder)
         for file in files_of(scale, own, name)
@@ -187,7 +198,7 @@ def made(make, more, wildcards):
     names = dict(wildcards)
     names.pop("tree", None)
     study = names.pop("study", None)
-    return make(study_of(study) if study else STUDIES, **names, **dict(more))
+    return make(study_of(study) if study else OF_SCALE[names["scale"]], **names, **dict(more))
 
 
 def of(make, **more):
@@ -262,10 +273,28 @@ def caption(wildcards, output):
     return markdown.escaped(jobs.caption(STUDIES[wildcards.study], name, wildcards.scale))
 
 
-COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
-READ = [key for key, study in STUDIES.items() if study.readings]
-CLAIMED = [key for key, study in STUDIES.items() if study.claims]
+
+
+def compared(scale, ending):
+    """Files of one kind of all tables of a scale that have published numbers."""
+    return [
+        f"results/{scale}/{key}/{tree(name)}/{name}.{ending}.csv"
+        for key, study in OF_SCALE[scale].items()
+        for name in study.with_published()
+    ]
+
+
+def of_studies(scale, name, has=lambda study: study.claims):
+    """Files of a name of all studies of a scale that have it."""
+    keys = [key for key, study in OF_SCALE[scale].items() if has(study)]
+    return [f"results/{scale}/{key}/{name}" for key in keys]
+
+
+def summed(scale):
+    """Files of all studies of a scale together."""
+    names = ["numbers", "claims", "baseline_comparison"] if compared(scale, "wholes") else []
+    return [f"results/{scale}/{name}.csv" for name in names]
 
 
 def of_readings(file):
@@ -286,29 +315,21 @@ def of_alternatives(wildcards):
 
 def shown(wildcards):
     """Files of a scale that the page shows: what the papers have, and of the rest what there is."""
+    scale = wildcards.scale
     artefacts = [
         file
-        for study in STUDIES.values()
-        for name in page.shown_of(study, wildcards.scale, PREFIX)
-        for file in files_of(wildcards.scale, study, name)
+        for study in OF_SCALE[scale].values()
+        for name in page.shown_of(study, scale, PREFIX)
+        for file in files_of(scale, study, name)
     ]
-    named = {
-        "claims": CLAIMED,
-        "claim_checks": CLAIMED,
-        "claims_by_reading": CLAIMED,
-        "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
-    }
-    summary = [f"results/{wildcards.scale}/wholes.csv"] if COMPARED else []
-    verdicts = [f"results/{wildcards.scale}/{key}/verdict.md" for key in FOLLOWING]
     return [
         *artefacts,
-        *summary,
-        *verdicts,
-        *(
-            f"results/{wildcards.scale}/{key}/{name}.csv"
-            for name, keys in named.items()
-            for key in keys
-        ),
+        *([f"results/{scale}/wholes.csv"] if summed(scale) else []),
+        *of_studies(scale, "verdict.md", lambda study: study.verdict_file()),
+        *of_studies(scale, "claims.csv"),
+        *of_studies(scale, "claim_checks.csv"),
+        *of_studies(scale, "claims_by_reading.csv"),
+        *of_studies(scale, "audit.csv", page.has_audit),
     ]
 
 
@@ -316,6 +337,7 @@ def judged(wildcards):
     """Files of the results that the page shows, and of those that the summary compares with the
     baseline.
     """
-    makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
+    makes = [of(page.verified, root=PREFIX)]
+    makes += [of(jobs.baseline_comparison)] if summed(wildcards.scale) else []
     parts = [results(job)(wildcards) for job in makes]
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}

@@ -38,11 +38,9 @@ use rule baseline_comparison as worth with:
 
 rule summary:
     input:
-        comparisons=[
-            f"results/{{scale}}/{key}/{tree(name)}/{name}.comparison.csv" for key, name in COMPARED
-        ],
-        wholes=[f"results/{{scale}}/{key}/{tree(name)}/{name}.wholes.csv" for key, name in COMPARED],
-        claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
+        comparisons=lambda wildcards: compared(wildcards.scale, "comparison"),
+        wholes=lambda wildcards: compared(wildcards.scale, "wholes"),
+        claims=lambda wildcards: of_studies(wildcards.scale, "claims.csv"),
     output:
         numbers="results/{scale}/numbers.csv",
         claims=report(
@@ -93,21 +91,15 @@ rule verdict:
         "../scripts/job.py"
 
 
-SUMMARY = expand(
-    "results/{scale}/{table}.csv",
-    table=["numbers", "claims", "baseline_comparison"] if COMPARED else [],
-    allow_missing=True,
-)
-
-
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
         unpack(judged),
         shown=shown,
-        summary=SUMMARY,
+        summary=lambda wildcards: summed(wildcards.scale),
     output:
-        "results/{scale}/verified.json",
+        # It says which studies the page shows, so it stays if its job is killed.
+        update("results/{scale}/verified.json"),
     log:
         "results/{scale}/verified.log",
     conda:
@@ -122,7 +114,7 @@ rule page:
     input:
         unpack(results(of(page.page, root=PREFIX))),
         shown=shown,
-        summary=SUMMARY,
+        summary=lambda wildcards: summed(wildcards.scale),
         # Last, for it is of all these files.
         verified="results/{scale}/verified.json",
     output:

@@ -34,7 +34,7 @@ rule extended:
 # Claims under joint readings. `extended` makes them too.
 rule readings:
     input:
-        [f"results/extended/{key}/claims_by_reading.csv" for key in READ],
+        of_studies("extended", "claims_by_reading.csv", lambda study: study.readings),
 
 
 # The report on the papers, for print: a page each, by the browser that the tests use.
@@ -61,6 +61,7 @@ for study in STUDIES:
             study
         input:
             files_in("full", "paper", study),
+            of_studies("full", "claims.csv", lambda own: own.key == study and own.claims),
 
     rule:
         name:

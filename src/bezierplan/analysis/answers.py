@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.planners import planner_module, planner_settings
+from bezierplan.planners import Plan, planner_module, planner_settings
 from bezierplan.running import planning
 from bezierplan.running.answer import restored
 from bezierplan.workspaces import robot
@@ -56,6 +57,12 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     }
 
 
+def of_planner(plan: Plan) -> dict[str, Any]:
+    """Return the fields of `api.Answer` that are the planner's own."""
+    own = {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
+    return own | {"turning_radius": plan.extra.get("least_radius", math.nan)}
+
+
 def of_run(results: Results, name: str) -> dict[str, Any]:
     """The fields of `api.Answer` for the results of one run, by its name."""
     row, (study, _, _, method, _) = results.runs.iloc[0], name.split("/")
@@ -74,12 +81,11 @@ def of_run(results: Results, name: str) -> dict[str, Any]:
 
 
 def lines(answer: Any) -> dict[str, str]:
-    """What to print of an `api.Answer`, by name."""
-    unit, settings = answer.problem.workspace.unit, answer.settings
-    words = {
-        "planner": answer.method,
-        "settings": ", ".join(f"{name} {value}" for name, value in settings.items()) or "none",
-    }
+    """What to print of an `api.Judgement` or an `api.Answer`, by name."""
+    unit, words = answer.problem.workspace.unit, {}
+    if method := getattr(answer, "method", ""):
+        settings = ", ".join(f"{name} {value}" for name, value in answer.settings.items())
+        words = {"planner": method, "settings": settings or "none"}
     if answer.robot_radius:
         words["robot radius"] = f"{answer.robot_radius:g} {unit}"
     words["shortest path"] = f"{answer.shortest:.6g} {unit}"
@@ -87,9 +93,15 @@ def lines(answer: Any) -> dict[str, str]:
         words["path"] = f"none ({answer.stop})"
     else:
         words |= _of_path(answer, unit)
-    if not math.isnan(answer.cpu_s):
-        words["CPU time"] = f"{answer.cpu_s:.3g} s"
+    if not math.isnan(seconds := getattr(answer, "cpu_s", math.nan)):
+        words["CPU time"] = f"{seconds:.3g} s"
     return words
+
+
+def rows(answer: Any) -> str:
+    """Return `lines` as a table of HTML."""
+    lined = lines(answer).items()
+    return f"<table>{''.join(f'<tr><th>{name}<td>{escape(text)}' for name, text in lined)}</table>"
 
 
 def _of_path(answer: Any, unit: str) -> dict[str, str]:
@@ -98,14 +110,12 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
         "length": f"{answer.length:.6g} {unit}",
         "curvature": f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}",
     }
-    if not math.isnan(answer.turning_radius):
-        asked, radius = answer.settings["turning_radius"], answer.turning_radius
-        words["turning radius"] = f"{radius:.6g} {unit}"
-        if math.isfinite(asked):
-            kept = planning.keeps_radius(asked, radius)
-            words["turning radius"] = f"{asked:.6g} {unit} asked" + (
-                " and kept" if kept else f", {radius:.6g} {unit} kept: no room for more"
-            )
+    radius = getattr(answer, "turning_radius", math.nan)
+    if not math.isnan(radius):
+        asked = answer.settings.get("turning_radius", math.inf)
+        kept = math.isinf(asked) or planning.keeps_radius(asked, radius)
+        less = "" if kept else f"; no room for {asked:.6g} {unit}"
+        words["turning radius"] = f"{radius:.6g} {unit}{less}"
     words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
     if answer.feasible:
         words["length"] += f", {_digits(100 * max(answer.gap, 0.0), 3)} % above the shortest path"

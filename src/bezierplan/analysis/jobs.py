@@ -366,6 +366,8 @@ class Verification(Job):
 
     folder: str
     """That of the scale."""
+    studies: dict[str, str]
+    """Those of the page, by name, each with the word that names it in a configuration."""
 
     def run(self, input_files, output_files):
         """List the files."""
@@ -380,6 +382,7 @@ class Verification(Job):
         content = recheck.sound(verdict) | {
             "digest": verdict.digest,
             "versions": recheck.versions(),
+            "studies": self.studies,
             "sha256": {
                 str(file.relative_to(self.folder)): recheck.sha256(file)
                 for file in sorted({*map(Path, input_files)})

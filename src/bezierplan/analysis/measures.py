@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from bezierplan.workspaces.problem import Path, Problem
 
-# Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic
+# Values of a curve's parameter at which curvature is taken: 120 steps on each of the five cubic
 # pieces of song2016.
 CURVATURE_SAMPLES = 601
 # Samples of a curved piece between which headings are compared (ma2020: 2,000 chords).

@@ -55,6 +55,8 @@ class Metric(NamedTuple):
         own name.
     on : tuple of str
         Kinds of workspace; () for all.
+    own : bool
+        Whether a study outside this project declares it; then it is finite, or nan.
     """
 
     unit: str
@@ -69,6 +71,7 @@ class Metric(NamedTuple):
     step: float | None = None
     needs: tuple[str, ...] = ()
     on: tuple[str, ...] = ()
+    own: bool = False
 
 
 class Metrics(dict[str, Metric]):
@@ -129,7 +132,9 @@ def metric(
     """
 
     def declared(function: F) -> F:
-        register({function.__name__: Metric(unit, meaning, adapter(function), **facts)})
+        own = not function.__module__.startswith("bezierplan.")
+        metric = Metric(unit, meaning, adapter(function), **facts, own=own)
+        register({function.__name__: metric})
         return function
 
     return declared

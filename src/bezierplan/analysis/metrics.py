@@ -46,7 +46,7 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
     KeyError
         For an unknown metric.
     ValueError
-        If the runs table lacks a column that only some have.
+        If the runs table lacks a column that only some have, or a study's own metric is infinite.
     """
     import pandas as pd
 
@@ -67,6 +67,11 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
         numbers = pd.Series(
             np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index
         )
+        if metric.own and (infinite := np.isinf(numbers)).any():
+            run = counted.loc[infinite.idxmax(), "id"]
+            raise ValueError(
+                f"metric {name}: infinite for run {run}; expected a finite number, or nan for none"
+            )
     return numbers.reindex(runs.index)
 
 

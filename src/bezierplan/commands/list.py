@@ -78,7 +78,9 @@ def _methods(study: Study) -> Rows:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
-        yield name, f"{planner}{variant}: {_sentence(planner_module(planner))}"
+        own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
+        what = filter(None, [_sentence(planner_module(planner)).rstrip("."), own])
+        yield name, f"{planner}{variant}: {'; '.join(what)}"
 
 
 def _settings(study: Study) -> Rows:

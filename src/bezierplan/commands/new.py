@@ -1,7 +1,9 @@
 """Make a study of your own, which runs at once, perhaps on a map of your own."""
 
 import re
+import shlex
 import shutil
+import sys
 from pathlib import Path
 
 import yaml
@@ -61,10 +63,19 @@ def main(
         ignore=shutil.ignore_patterns("__pycache__"),
     )
     _replace(folder / "README.md", "mystudy", folder.name)
+    _replace(folder / "README.md", "^bezierplan", _called())
     if from_:
         ends = {"start": list(start), "target": list(target)}
         _put(folder, files.sources(workspace, from_.parent), workspace, ends)
-    print(f"{folder}: a study; next: bezierplan run {folder}")
+    print(f"{folder}: a study; next: {_called()} run {shlex.quote(str(folder))}")
+
+
+def _called() -> str:
+    """Return the words by which a shell calls this program once more."""
+    first = sys.argv[0]
+    if Path(first).name == "bezierplan":
+        return "bezierplan" if first == shutil.which("bezierplan") else shlex.quote(first)
+    return f"{shlex.quote(sys.orig_argv[0])} -m bezierplan"
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:

@@ -78,7 +78,8 @@ def main(
         answer = api.plan(problem, **options, **settings)
     if out and answer.path:
         answer.save(out, step=step)
-    for name, text in answers.lines(answer).items():
+    file = {"file": str(out)} if out and answer.path else {}
+    for name, text in (answers.lines(answer) | file).items():
         print(f"{name:16}{text}")
     if not math.isfinite(answer.shortest):
         _fail(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")

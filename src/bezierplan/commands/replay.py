@@ -30,7 +30,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
 
     Examples
     --------
-    replay song2016/routes/15_240/smooth/3
+    replay song2016/routes/15_240/smooth/2
     replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0
     """
     loaded = studies_of(studies)

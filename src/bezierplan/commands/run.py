@@ -2,6 +2,7 @@
 profile.
 """
 
+import importlib
 import json
 import os
 import signal
@@ -12,7 +13,9 @@ from collections.abc import Sequence
 from bezierplan.commands import is_study, study_named
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
+from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
+from bezierplan.schema.model import one_or_list
 
 
 def main(*words: str) -> None:
@@ -35,6 +38,7 @@ def main(*words: str) -> None:
     """
     if not words:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
+    importlib.import_module("snakemake")  # or else it is told what to install
     out, err = map(forks.stream_for, (sys.stdout, sys.stderr))
     workflow = subprocess.Popen(command(words), stdout=out, stderr=err, process_group=0)
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
@@ -49,12 +53,18 @@ def main(*words: str) -> None:
 
 def command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
-    snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
-    snakemake += ["--workflow-profile", str(TREE / "profiles" / "default")]
+    snakemake = [sys.executable, "-m", "snakemake"]
+    if not any(word.startswith("--workflow-profile") for word in words):
+        # Of a profile, Snakemake would tell each time that it uses it.
+        profile = checked.read(TREE / "profiles" / "default" / "profile.yaml")
+        snakemake += ["--workflow-profile", "none"]
+        for name, value in profile.items():
+            snakemake += [f"--{name}", *([] if value is True else one_or_list(value))]
     # A word that stands there again is a target: a folder may have the name of one.
     folders = {word: study_named(word) for word in words if is_study(word)}
     others = [*words]
     for word in folders:
         others.remove(word)
     config = ["--config", f"studies={json.dumps([*folders.values()])}"] if folders else []
-    return [*snakemake, *others, *config]
+    # Other options before this one could take targets for their values.
+    return [*snakemake, "--snakefile", str(TREE / "Snakefile"), *others, *config]

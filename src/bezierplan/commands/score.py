@@ -1,16 +1,16 @@
 """Score paths or planners on the problems of a paper, beside the paper's methods."""
 
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from bezierplan import api
+from bezierplan.analysis import answers
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.commands.arguments import Settings
-from bezierplan.running import problems as problem_files
-from bezierplan.running.guard import contract, interface
-from bezierplan.running.guard.worker import Reply
+from bezierplan.geometry.shortest_paths import shortest_path
+from bezierplan.planners import Plan
+from bezierplan.running.answer import check_ends
 from bezierplan.workspaces.problem import Problem
 
 
@@ -20,6 +20,8 @@ def main(
     settings: Settings | None = None,
     repeats: int = 20,
     problems: Path | None = None,
+    out: Path | None = None,
+    plot: Path | None = None,
 ) -> None:
     """Print a row for each method: runs, share of feasible ones, excess over the exact shortest
     path, evaluations, and the mean rank on a problem. Those of the papers are not run again.
@@ -37,42 +39,47 @@ def main(
         runs of a planner on each problem
     problems : Path, optional
         a csv file for the problems: ends, bound, map
+    out : Path, optional
+        a csv file for the rows
+    plot : Path, optional
+        a picture (.svg, .png, .pdf) of the best path of each candidate on each problem, at most 12
+        of these
 
     Examples
     --------
     score song2016/routes --problems routes.csv
     score song2016/routes paths.csv
-    score song2016/routes mystudy/walk.py --settings '{tries: 200}'
+    score song2016/routes mystudy/walk.py --settings '{tries: 200}' --out scores.csv --plot best.svg
     """
     asked = api.problems(experiment)
     if problems:
         benchmark.problem_rows(asked).to_csv(problems, index=False)
-    tables = [benchmark.stored(experiment)]
+    stored, made = benchmark.stored(experiment), {}
     for candidate in candidates:
-        if candidate.endswith(".csv"):
-            paths = benchmark.read_paths(Path(candidate), asked)
-            runs = [benchmark.run(asked[name], *row) for name, *row in paths]
-        else:
-            made = _planned(candidate, asked, settings or {}, repeats)
-            runs = [
-                benchmark.run(asked[name], each.result.path, each.result.evaluations)
-                for name, replies in made.items()
-                for each in replies
-            ]
-        tables.append(benchmark.summaries(pd.DataFrame(runs).assign(method=f"here:{candidate}")))
-    print(benchmark.scores(pd.concat(tables)).to_string(float_format="%.4g"))
+        made[f"here:{candidate}"] = (
+            _read(Path(candidate), asked)
+            if candidate.endswith(".csv")
+            else api.answers_to([*asked.values()], candidate, repeats, settings=settings or {})
+        )
+    compared = api.Comparison(made)
+    own = benchmark.summaries(compared.runs) if made else stored[:0]
+    table = benchmark.scores(pd.concat([stored, own])[stored.columns])
+    print(table.to_string(float_format="%.4g"))
+    if out:
+        table.to_csv(out)
+    if plot:
+        compared.save(plot)
 
 
-def _planned(
-    method: str, problems: dict[str, Problem], settings: dict[str, Any], repeats: int
-) -> dict[str, list[Reply]]:
-    """What a planner answers to problems, by name; one in a file is started once for all. Raises
-    ValueError for a wrong setting, and PlannerFailure.
+def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
+    """Return the paths of a csv file, judged. Raises ValueError for one that does not join the ends
+    of its problem.
     """
-    planner, preset = api.named(method)
-    module, settings = interface.loaded(planner, f"method: {method}"), preset | settings
-    kinds = getattr(module, "workspaces", None)
-    suited = {name: problem_files.placed(each, kinds) for name, each in problems.items()}
-    for each in suited.values():
-        api.check_settings(method, module, settings, each)
-    return contract.replies(planner, settings, suited, range(repeats))
+    found = []
+    for name, path, evaluations in benchmark.read_paths(file, problems):
+        problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
+        check_ends(path, problem)
+        judged = answers.verdict(problem, shortest_path(problem), path)
+        plan = plan._replace(evaluations=evaluations)
+        found.append(api.Answer(**judged, **answers.of_planner(plan), method=str(file)))
+    return found

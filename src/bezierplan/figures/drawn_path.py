@@ -1,60 +1,96 @@
-"""One path on its map, in the style of the studies' figures."""
+"""Pictures of maps, problems and paths, in the style of the studies' figures."""
 
 from __future__ import annotations
 
+import base64
 import io
-from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import paths, workspace
-from bezierplan.workspaces.problem import Path, Problem
 
+# What draws takes long to import, so functions import it.
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path as File
 
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+_MOST = 12
+"""Problems in a picture."""
+_NOTEBOOK = {"dpi": 140, "format": "webp"}
+"""How pictures are written into a notebook, which keeps them all: as a seventh of an SVG."""
 
 
 def draw(
-    axes: Axes,
-    problem: Problem,
-    path: Path | None,
-    shortest: np.ndarray,
-    collision: tuple[float, float] | None,
-) -> None:
-    """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if
-    any.
+    shown: Problem | Workspace,
+    axes: Axes | None = None,
+    path: Path | None = None,
+    shortest: np.ndarray | None = None,
+    collision: tuple[float, float] | None = None,
+    *,
+    map: bool = True,
+    **look: Any,
+) -> Axes:
+    """Draw a map, or a problem with a path in a look, its first collision, and the exact shortest
+    path (n, 2), on axes or on new ones, and return these.
+
+    map: whether the map, the ends and the exact shortest path are drawn.
     """
-    workspace.draw_home(axes, problem.workspace)
-    parts = {"path": paths.steps(path)} if path else {}
-    parts |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
+    from bezierplan.figures.panels import paths, workspace
+
+    if axes is None:
+        import matplotlib.pyplot as plt
+
+        axes = plt.figure(layout="constrained").add_subplot()
+    parts: dict[str, Any] = {"path": paths.steps(path) if path else np.empty((0, 2))}
+    if map:
+        workspace.draw_home(axes, getattr(shown, "workspace", shown))
+        ends = {name: [getattr(shown, name)] for name in workspace.ENDS if hasattr(shown, name)}
+        parts |= ends if shortest is None else ends | {"bound": shortest}
     if collision:
         parts["collision"] = [collision]
-    style.draw_parts(axes, workspace.places(parts), paths.LOOK)
+    looks = paths.LOOK | {"path": paths.LOOK["path"] | look}
+    style.draw_parts(axes, workspace.places(parts), looks)
+    return axes
 
 
-def html(draw: Callable[[Axes], object], lines: dict[str, str]) -> str:
-    """What a function draws on axes, and lines by name, as HTML."""
-    picture = io.StringIO()
-    save(picture, draw)
-    rows = "".join(f"<tr><th>{name}<td>{escape(text)}" for name, text in lines.items())
-    return picture.getvalue()[picture.getvalue().index("<svg") :] + f"<table>{rows}</table>"
+def add_legend(figure: Figure) -> None:
+    """Name each look of all panels once, below them."""
+    named: dict[str, Any] = {}
+    for axes in figure.axes:
+        handles, labels = axes.get_legend_handles_labels()
+        named |= dict(zip(labels, handles))
+    columns = 2 if len(figure.axes) == 1 else 4
+    figure.legend(named.values(), named, loc="outside lower center", ncols=columns)
 
 
-def save(file: File | io.StringIO, draw: Callable[[Axes], object]) -> None:
-    """What a function draws on axes as a picture with a legend, of the kind that the file's suffix
-    names; into text as SVG.
+def html(text: str, *draws: Callable[..., object]) -> str:
+    """Return what functions draw, each on axes of its own, and a text below, as HTML."""
+    drawn = io.BytesIO()
+    save(drawn, *draws, **_NOTEBOOK)
+    data = base64.b64encode(drawn.getvalue()).decode()
+    return f'<img alt="map" src="data:image/webp;base64,{data}">{text}'
+
+
+def save(file: File | io.BytesIO, *draws: Callable[..., object], **how: Any) -> None:
+    """Save what functions draw, the first ones of many, each on axes of its own, as a picture with
+    a legend, of the kind that the file's suffix names. how: options of matplotlib's `savefig`.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
+    draws = draws[:_MOST]
+    columns = min(len(draws), 3)
+    width = style.WIDTHS["two" if columns > 1 else "one"]
+    rows = -(-len(draws) // columns)
     with mpl.rc_context(style.SETTINGS):
-        figure = Figure(figsize=2 * [style.WIDTHS["one"]], layout="constrained")
-        axes = figure.add_subplot()
-        draw(axes)
-        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-        figure.savefig(file, dpi=300, format="svg" if isinstance(file, io.StringIO) else None)
+        figure = Figure(figsize=(width, width * rows / columns), layout="constrained")
+        for number, each in enumerate(draws, 1):
+            each(axes=figure.add_subplot(rows, columns, number))
+        add_legend(figure)
+        figure.savefig(file, bbox_inches="tight", **{"dpi": 300} | how)

@@ -7,7 +7,7 @@ numbered so that every bit string is a cell (`grid.embed`); no operator can leav
 Lengths in the kernels are in cells.
 
 The objective is a sum over stretches of the curve: runs of samples that depend on the same few
-control points (three of eight for quadratic pieces). A stretch that a child inherits whole from a
+control points (four of eight for cubic pieces). A stretch that a child inherits whole from a
 parent keeps the parent's length, which changes no result.
 """
 
@@ -29,7 +29,7 @@ from bezierplan.planners.parts.genetic import (
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
-from bezierplan.workspaces.grid import ON_LINE, embed
+from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples",)
@@ -45,6 +45,7 @@ Cut = IntEnum("Cut", "bit gene", start=0)
 Mutation = IntEnum("Mutation", "one_bit each_gene each_bit", start=0)
 PenaltyFor = IntEnum("PenaltyFor", "each_sample path per_cell", start=0)
 Report = IntEnum("Report", "best_so_far last_generation", start=0)
+Rejection = IntEnum("Rejection", "all consecutive harmless none", start=0)
 
 
 class Settings(NamedTuple):
@@ -104,6 +105,15 @@ class Settings(NamedTuple):
             "each generation"
         ),
     ]
+    rejection: Annotated[
+        Rejection,
+        About(
+            "which control points of the final path are rejected because they coincide with "
+            "another: all, those next to each other, all if no more samples then lie in occupied "
+            "cells, or none",
+            PAPER + ", Remark 3",
+        ),
+    ]
 
 
 def check(settings: dict) -> None:
@@ -128,8 +138,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        `claimed_feasible`: no sample in an occupied cell. Extra column: bad_samples, the number of
-        samples in occupied cells.
+        The path without the control points that are rejected; `objective` is that of the best
+        chromosome, which has them. `claimed_feasible`: no sample in an occupied cell. Extra column:
+        bad_samples, the number of samples in occupied cells.
 
     References
     ----------
@@ -174,8 +185,16 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
     points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
+    path = Path(curve, points)
+    rest = distinct(points, settings.rejection == Rejection.consecutive)
+    if settings.rejection != Rejection.none and len(rest) < len(points):
+        # Too few points for pieces of this degree define one piece of a lower degree.
+        shorter = Path(curve if len(rest) >= curves.least_points(curve) else "bezier", rest)
+        bad = _bad_samples(shorter, grid, occupied, settings.samples)
+        if bad <= best_bad or settings.rejection != Rejection.harmless:
+            path, best_bad = shorter, bad
     return Plan(
-        path=Path(curve, points),
+        path=path,
         objective=history[-1] * grid.cell,
         claimed_feasible=best_bad == 0,
         evaluations=settings.population * (settings.generations + 1),
@@ -183,6 +202,34 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         stop="generations",
         extra={"bad_samples": int(best_bad)},
     )
+
+
+def distinct(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
+    """Return the control points (m, 2) of (n, 2) that coincide with no other (song2016, Remark 3).
+
+    Start and target stay, and the first of several free ones. consecutive: whether only points
+    that follow each other count as coinciding.
+
+    >>> points = np.array([[0, 0], [0, 0], [2, 1], [3, 1], [2, 1], [4, 0]])
+    >>> distinct(points).tolist()
+    [[0, 0], [2, 1], [3, 1], [4, 0]]
+    >>> distinct(points, consecutive=True).tolist()
+    [[0, 0], [2, 1], [3, 1], [2, 1], [4, 0]]
+    """
+    start, *inner, target = map(tuple, points.tolist())
+    if consecutive:
+        inner = [point for point, before in zip(inner, [start, *inner]) if point != before]
+        rest = inner[:-1] if inner[-1:] == [target] else inner
+    else:
+        rest = [point for point in dict.fromkeys(inner) if point not in (start, target)]
+    return np.array([start, *rest, target])
+
+
+def _bad_samples(path: Path, grid: Grid, occupied: np.ndarray, samples: int) -> int:
+    """Return the number of samples of a path that lie in occupied cells."""
+    basis = curves.sample_matrix(path.curve, len(path.points), samples)
+    column, row = np.floor(grid.in_cells(basis @ path.points) + ON_LINE).astype(int).T
+    return int(occupied[row, column].sum())
 
 
 def stretches(basis: np.ndarray) -> np.ndarray:

@@ -359,24 +359,6 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         copy(g[before], g[t])
         g_fitness[t] = g_fitness[before]
         for i in range(particles):
-            if t > 0:
-                if rules.random_numbers == RandomNumbers.particle or (
-                    rules.random_numbers == RandomNumbers.iteration and i == 0
-                ):
-                    r[0], r[1] = rng.random(), rng.random()
-                _move(
-                    rng,
-                    r,
-                    x[i],
-                    v[i],
-                    p[i],
-                    g[t],
-                    zeta[before, min(i, zeta.shape[1] - 1)],
-                    w,
-                    limit,
-                    rules,
-                )
-                _hold(x[i], v[i], low, high, rules.bound_rule)
             penalised.write_curve(x[i], objective, curve)
             if rules.tested == Tested.samples:
                 violation, colliding = penalised.violation(curve, objective, scratch)
@@ -385,11 +367,10 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             # Most paths are too long to be a best one, which a few chords tell.
-            least = penalised.fitness(penalised.least_length(curve), violation, objective)
-            if least >= p_fitness[i]:
-                continue
-            length = penalised.length(curve, scratch)
-            fitness = penalised.fitness(length, violation, objective)
+            fitness = penalised.fitness(penalised.least_length(curve), violation, objective)
+            if fitness < p_fitness[i]:
+                length = penalised.length(curve, scratch)
+                fitness = penalised.fitness(length, violation, objective)
             if fitness < p_fitness[i]:
                 copy(x[i], p[i])
                 p_fitness[i] = fitness
@@ -398,10 +379,18 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 g_fitness[t] = fitness
                 g_violation, g_colliding = violation, colliding
                 improved_at = t
+            if t < iterations:
+                if rules.random_numbers == RandomNumbers.particle or (
+                    rules.random_numbers == RandomNumbers.iteration and i == 0
+                ):
+                    r[0], r[1] = rng.random(), rng.random()
+                own = zeta[t, min(i, zeta.shape[1] - 1)]
+                _move(rng, r, x[i], v[i], p[i], g[t], own, w, limit, rules)
+                _hold(x[i], v[i], low, high, rules.bound_rule)
         best_infeasible += g_violation > FEASIBLE
+        w *= rules.inertia_damping
         if t > 0:
             best_colliding_samples += g_colliding
-            w *= rules.inertia_damping
         if t - improved_at == rules.stall_limit > 0:
             break
     return (

@@ -29,7 +29,7 @@ workspaces = ("circles", "polygons", "grid")
 
 SOURCE = "Storn and Price 1997"
 
-Curve = IntEnum("Curve", "bezier piecewise_quadratic", start=0)
+Curve = IntEnum("Curve", "bezier piecewise_quadratic piecewise_cubic", start=0)
 Collision = IntEnum("Collision", "samples chords", start=0)
 
 

@@ -27,6 +27,7 @@ from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import (
     MOST_NEIGHBOURS,
+    Ground,
     Neighbourhood,
     centres,
     edge_energy,
@@ -60,8 +61,7 @@ RandomNode = IntEnum("RandomNode", "free any", start=0)
 Result = IntEnum("Result", "last_generation best_so_far", start=0)
 Corners = IntEnum("Corners", "open closed", start=0)
 
-# Walks, or random paths, tried for one path of the first population before it counts as
-# unreachable.
+# Walks tried for one path of the first population before it counts as unreachable.
 _MOST_TRIES = 1_000_000
 # Smaller differences between the energy of a path and the best so far are rounding errors.
 _IMPROVEMENT = 1e-9
@@ -78,7 +78,7 @@ class Settings(NamedTuple):
         Initial,
         About(
             "first paths: walks from cell to visible cell, random paths of which feasible ones "
-            "are kept, or any",
+            "are kept (slow on maps of thousands of cells), or any",
             PAPER + ", Section 2.3",
         ),
     ]
@@ -291,9 +291,12 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
     population = rules.population
     paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
     lengths = np.empty(population, dtype=np.int64)
+    ways = np.empty((0, 0))
+    if rules.initial == Initial.rejection:
+        ways = free_ways(target, free, ground, rules.most_nodes)
     for i in range(population):
         paths[i, 0] = start
-        lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
+        lengths[i] = _first_path(starts, paths[i], target, free, ground, rules, ways)
         if lengths[i] == 0:
             none = np.full(1, np.inf)
             return _Outcome(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
@@ -432,20 +435,67 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 # The first population (meledje, Section 2.3).
 
 
-@allocation_free
-def _first_path(rng, path, target, free, ground, rules):
-    """A random path, written after its start; returns its number of nodes, 0 if none was found."""
+@compiled
+def _first_path(rng, path, target, free, ground, rules, ways):
+    """Write a random path after its start; return its number of nodes, 0 if none was found.
+
+    ways: `free_ways`, for `rejection`.
+    """
+    if rules.initial == Initial.rejection:
+        return kept_path(rng, path, target, free, ground, ways)
     for _ in range(_MOST_TRIES):
         length = (
             _walk(rng, path, target, free, ground)
             if rules.initial == Initial.feasible
             else _random_path(rng, path, target, free)
         )
-        if length and (
-            rules.initial != Initial.rejection or obstacles_along(path[:length], ground) == 0
-        ):
+        if length:
             return length
     return 0
+
+
+@compiled
+def free_ways(target: int, free: np.ndarray, ground: Ground, most_nodes: int) -> np.ndarray:
+    """Return the chance (cells, most_nodes + 1) that so many random free cells after a cell lead to
+    the target without meeting an obstacle.
+    """
+    ways = np.zeros((ground.occupied.size, most_nodes + 1))
+    for cell in range(len(ways)):
+        ways[cell, 0] = obstacles_on(ground, cell, target) == 0
+    for inner in range(1, most_nodes + 1):
+        for cell in range(len(ways)):
+            for following in free:
+                if obstacles_on(ground, cell, following) == 0:
+                    ways[cell, inner] += ways[following, inner - 1] / len(free)
+    return ways
+
+
+@compiled
+def kept_path(
+    rng: np.random.Generator,
+    path: np.ndarray,
+    target: int,
+    free: np.ndarray,
+    ground: Ground,
+    ways: np.ndarray,
+) -> int:
+    """Write a feasible path after its start; return its number of nodes, 0 if there is none.
+
+    Its number of inner nodes and their cells have the chances that they have where random numbers
+    within the limit and random free cells are drawn until the path is feasible. Drawing them so
+    would take millions of times on some maps.
+    """
+    if ways[path[0]].sum() == 0:
+        return 0
+    inner = roulette(rng, ways[path[0]], 1)[0]
+    weights = np.empty(len(free))
+    for k in range(1, inner + 1):
+        for c in range(len(free)):
+            is_free = obstacles_on(ground, path[k - 1], free[c]) == 0
+            weights[c] = ways[free[c], inner - k] if is_free else 0.0
+        path[k] = free[roulette(rng, weights, 1)[0]]
+    path[inner + 1] = target
+    return inner + 2
 
 
 @allocation_free

@@ -83,7 +83,7 @@ class Turns(NamedTuple):
     angle: np.ndarray
 
 
-class Scene(NamedTuple):
+class Course(NamedTuple):
     """What the path must suit: start and target (2, 2), the region's origin (2,), the length that
     it may have at most; and how many paths have been tried (1,).
     """
@@ -97,12 +97,12 @@ class Scene(NamedTuple):
 class String(NamedTuple):
     """A string pulled tight around m circles, in arrays with room for one circle a turn.
 
-    crowded: the number of a circle that has no room beside its neighbours, or -1. count: m. first,
+    crowd: the number of a circle that has no room beside its neighbours, or -1. count: m. first,
     last: the turns that a circle contains. centres: (m, 2). radii: (m,). legs: (m + 1, 2, 2) ends
     of the straight parts. sweeps: (m,) angles of the arcs, each in the sense of its turn.
     """
 
-    crowded: int
+    crowd: int
     count: int
     first: np.ndarray
     last: np.ndarray
@@ -178,7 +178,7 @@ def _round(
     paths tried.
     """
     blocked = region(problem.workspace)
-    scene = Scene(
+    course = Course(
         np.array([problem.start, problem.target], dtype=float),
         -from_origin(np.zeros(2), blocked),
         (1 + _SAME) * (1 + settings.excess) * bound.length,
@@ -187,11 +187,11 @@ def _round(
     # Around corners of a grown obstacle there may be less room than for a circle.
     for workspace in (problem.workspace, None):
         turns = turns_of(bound.points, workspace)
-        radii, is_free = _widen(scene, turns, blocked, bound.length, settings.turning_radius)
+        radii, is_free = _widen(course, turns, blocked, bound.length, settings.turning_radius)
         if is_free:
             break
-    points, _ = _draw(scene, turns, _shorter(scene, turns, radii))
-    return points, radii, int(scene.trials[0])
+    points, _ = _draw(course, turns, _shorter(course, turns, radii))
+    return points, radii, int(course.trials[0])
 
 
 def turns_of(points: np.ndarray, workspace: object) -> Turns:
@@ -249,57 +249,57 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def _widen(scene, turns, region, shortest, asked):
+def _widen(course, turns, region, shortest, wish):
     """Return the radius (n,) of each turn, and whether the path is free."""
-    levels = _ladder(min(asked, _TIGHTEST * shortest), min(asked, _WIDEST * shortest))
+    levels = _ladder(min(wish, _TIGHTEST * shortest), min(wish, _WIDEST * shortest))
     top = len(levels) - 1
     radii = turns.radius.copy()
 
     # Turns without room for the least radius stay corners. The nearer end of a leg that meets
     # something may not have been to blame, so each is tried again.
     live = np.ones(len(radii), dtype=np.bool_)
-    found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))
-    while found != _FREE and live.any():
+    verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[0]))
+    while verdict != _FREE and live.any():
         if not live[first : last + 1].any():
             first, last = 0, len(live) - 1
         live[first : last + 1] = False
-        found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))
+        verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[0]))
     for i in np.flatnonzero(~live):
         live[i] = True
-        live[i] = _try(scene, turns, region, _raise(radii, turns, live, levels[0]))[0] == _FREE
+        live[i] = _try(course, turns, region, _raise(radii, turns, live, levels[0]))[0] == _FREE
 
     # The tightest turn. Wider circles have less room beside each other, and strings around them are
     # longer; but a path that meets something at some radius may be free at a larger one.
     k = top
     while (
         k > _STRIDE
-        and _try(scene, turns, region, _raise(radii, turns, live, levels[k]))[0] >= _CROWDED
+        and _try(course, turns, region, _raise(radii, turns, live, levels[k]))[0] >= _CROWDED
     ):
         k -= _STRIDE
     k = min(k + _STRIDE, top)
-    while k > 0 and _try(scene, turns, region, _raise(radii, turns, live, levels[k]))[0] != _FREE:
+    while k > 0 and _try(course, turns, region, _raise(radii, turns, live, levels[k]))[0] != _FREE:
         k -= 1
     radii = _raise(radii, turns, live, levels[k])
 
     # The others grow together, and whichever meets something stops.
     while k < top and live.any():
-        found, first, last = _try(scene, turns, region, _raise(radii, turns, live, levels[top]))
-        if found == _FREE:
+        verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[top]))
+        if verdict == _FREE:
             return _raise(radii, turns, live, levels[top]), True
         above = top
         while above - k > 1:
             middle = (k + above) // 2
-            there = _try(scene, turns, region, _raise(radii, turns, live, levels[middle]))
+            there = _try(course, turns, region, _raise(radii, turns, live, levels[middle]))
             if there[0] == _FREE:
                 k = middle
             else:
                 above = middle
-                found, first, last = there
+                verdict, first, last = there
         radii = _raise(radii, turns, live, levels[k])
-        if found == _TOO_LONG or not live[first : last + 1].any():
+        if verdict == _TOO_LONG or not live[first : last + 1].any():
             break
         live[first : last + 1] = False
-    return radii, _try(scene, turns, region, radii)[0] == _FREE
+    return radii, _try(course, turns, region, radii)[0] == _FREE
 
 
 @compiled
@@ -323,22 +323,22 @@ def _raise(radii, turns, live, level):
 
 
 @compiled
-def _try(scene, turns, region, radii):
+def _try(course, turns, region, radii):
     """Try the path with some radii (n,): return what was found, and if it is blocked, the first and
     the last of the turns that are to blame.
     """
-    scene.trials[0] += 1
-    string = _shorter(scene, turns, radii)
-    if string.crowded >= 0:
-        return _CROWDED, string.first[string.crowded], string.last[string.crowded]
-    if _length(string) > scene.limit:
+    course.trials[0] += 1
+    string = _shorter(course, turns, radii)
+    if string.crowd >= 0:
+        return _CROWDED, string.first[string.crowd], string.last[string.crowd]
+    if _length(string) > course.limit:
         return _TOO_LONG, 0, len(radii) - 1
-    points, part = _draw(scene, turns, string)
+    points, part = _draw(course, turns, string)
     piece = np.empty((1, 4, 2))
     for k in range(len(part)):
         for i in range(4):
             for axis in range(2):
-                piece[0, i, axis] = points[3 * k + i, axis] - scene.origin[axis]
+                piece[0, i, axis] = points[3 * k + i, axis] - course.origin[axis]
         at = first_collision(piece, region)[0]
         if at < np.inf and string.count == 0:
             return _BLOCKED, 0, -1
@@ -351,16 +351,16 @@ def _try(scene, turns, region, radii):
 
 
 @compiled
-def _shorter(scene, turns, radii):
+def _shorter(course, turns, radii):
     """Return the string around circles of some radii (n,)."""
-    string, other = _pull(scene, turns, radii, False), _pull(scene, turns, radii, True)
+    string, other = _pull(course, turns, radii, False), _pull(course, turns, radii, True)
     return other if _length(other) < _length(string) else string
 
 
 @allocation_free
 def _length(string):
     """Return the length of a string, infinite if its circles are crowded."""
-    length = 0.0 if string.crowded < 0 else math.inf
+    length = 0.0 if string.crowd < 0 else math.inf
     for (ax, ay), (bx, by) in string.legs[: string.count + 1]:
         length += math.hypot(bx - ax, by - ay)
     for k in range(string.count):
@@ -369,9 +369,10 @@ def _length(string):
 
 
 @compiled
-def _pull(scene, turns, radii, patient):
-    """Return the string pulled tight around circles of some radii (n,). Circles in each other's way
-    join at once, or, if patient, when the others have come to rest: either may be shorter.
+def _pull(course, turns, radii, patient):
+    """Return the string pulled tight around circles of some radii (n,). Circles that are in each
+    other's way join at once or, if patient, when the others have come to rest: either may be
+    shorter.
 
     Each circle lies where the string's pull and its corners hold it: as far inwards as these allow.
     """
@@ -395,40 +396,41 @@ def _pull(scene, turns, radii, patient):
                 inward[k] /= size
             if not _place(turns, first[k], last[k], reach[k], inward[k], centres[k]):
                 return String(k, count, first, last, centres, reach, legs, sweeps)
-        _part(scene.ends, turns, first, last, count, reach, side, centres)
-        wrong = crowded = _join(scene.ends, centres, side * reach, count, legs, heading)
+        _part(course.ends, turns, first, last, count, reach, side, centres)
+        wrong = crowd = _join(course.ends, centres, side * reach, count, legs, heading)
         for k in range(count):
             expected = turns.angle[first[k] : last[k] + 1].sum()
             cross = heading[k, 0] * heading[k + 1, 1] - heading[k, 1] * heading[k + 1, 0]
             dot = heading[k, 0] * heading[k + 1, 0] + heading[k, 1] * heading[k + 1, 1]
             more = side[k] * math.atan2(cross, dot) - expected
             sweeps[k] = expected + (more + math.pi) % math.tau - math.pi
-            if sweeps[k] < -_STRAIGHT and (wrong == crowded or sweeps[k] < sweeps[wrong]):
+            if sweeps[k] < -_STRAIGHT and (wrong == crowd or sweeps[k] < sweeps[wrong]):
                 wrong = k
         pulls += 1
-        if crowded >= 0 and pulls > _CROWDED_PULLS:
+        if crowd >= 0 and pulls > _CROWDED_PULLS:
             break
         if wrong < 0:
             continue
         # A circle that bends the string back shares one with its nearer neighbour, unless the
         # string passes outside its corners without it.
-        gone, other = wrong, _neighbour(centres, side, count, wrong)
-        beside = other >= 0 and _contains(
-            turns, first[wrong], last[wrong], reach[other], centres[other, 0], centres[other, 1]
-        )
         if patient and pulls < _PULLS:
             continue
-        if not beside and _is_needless(
-            scene.ends, turns, centres, side * reach, first, last, count, wrong
+        gone, neighbour = wrong, _neighbour(centres, side, count, wrong)
+        x, y = centres[neighbour]
+        is_inside = neighbour >= 0 and _contains(
+            turns, first[wrong], last[wrong], reach[neighbour], x, y
+        )
+        if not is_inside and _is_needless(
+            course.ends, turns, centres, side * reach, first, last, count, wrong
         ):
             if pulls < _PULLS:
                 continue
-        elif other < 0:
+        elif neighbour < 0:
             continue
         else:
-            gone, other = max(wrong, other), min(wrong, other)
-            last[other] = last[gone]
-            reach[other] = max(reach[other], reach[gone])
+            gone, neighbour = max(wrong, neighbour), min(wrong, neighbour)
+            last[neighbour] = last[gone]
+            reach[neighbour] = max(reach[neighbour], reach[gone])
         count -= 1
         for k in range(gone, count):
             first[k], last[k] = first[k + 1], last[k + 1]
@@ -533,28 +535,29 @@ def _contains(turns, first, last, radius, x, y):
 
 
 @allocation_free
-def _join(ends, centres, signed, count, legs, heading):
+def _join(ends, centres, signed_radii, count, legs, heading):
     """Draw the legs between circles, and their directions; return the number of a circle that lies
     so close to another one that no leg fits between them, or -1.
     """
-    crowded = -1
+    crowd = -1
     for k in range(count + 1):
-        if not _draw_leg(ends, centres, signed, count, k - 1, k, legs[k], heading[k]):
-            crowded = min(k, count - 1)
-    return crowded
+        if not _draw_leg(ends, centres, signed_radii, count, k - 1, k, legs[k], heading[k]):
+            crowd = min(k, count - 1)
+    return crowd
 
 
 @allocation_free
-def _draw_leg(ends, centres, signed, count, k, j, leg, heading):
+def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
     """Draw the leg (2, 2) from circle k, or the start, to circle j, or the target, and its unit
-    direction (2,); return whether it fits. signed: radii, positive where the string turns left.
+    direction (2,); return whether it fits. signed_radii: positive where
+    the string turns left.
     """
     ax, ay = centres[k] if k >= 0 else ends[0]
     bx, by = centres[j] if j < count else ends[1]
-    one = signed[k] if k >= 0 else 0.0
-    other = signed[j] if j < count else 0.0
+    radius = signed_radii[k] if k >= 0 else 0.0
+    next_radius = signed_radii[j] if j < count else 0.0
     distance = math.hypot(bx - ax, by - ay)
-    across = other - one
+    across = next_radius - radius
     fits = abs(across) <= distance
     # Where it does not fit, both circles touch it at one place.
     tilt = (
@@ -564,18 +567,18 @@ def _draw_leg(ends, centres, signed, count, k, j, leg, heading):
     )
     direction = math.atan2(by - ay, bx - ax) - tilt
     heading[0], heading[1] = math.cos(direction), math.sin(direction)
-    leg[0, 0], leg[0, 1] = ax + one * heading[1], ay - one * heading[0]
-    leg[1, 0], leg[1, 1] = bx + other * heading[1], by - other * heading[0]
+    leg[0, 0], leg[0, 1] = ax + radius * heading[1], ay - radius * heading[0]
+    leg[1, 0], leg[1, 1] = bx + next_radius * heading[1], by - next_radius * heading[0]
     return fits
 
 
 @compiled
-def _is_needless(ends, turns, centres, signed, first, last, count, k):
+def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
     """Return whether the leg past a circle, from the one before it to the next, leaves its corners
     on the side to which the path turns there.
     """
     leg, heading = np.empty((2, 2)), np.empty(2)
-    if not _draw_leg(ends, centres, signed, count, k - 1, k + 1, leg, heading):
+    if not _draw_leg(ends, centres, signed_radii, count, k - 1, k + 1, leg, heading):
         return False
     for i in range(first[k], last[k] + 1):
         x, y = turns.corner[i, 0] - leg[0, 0], turns.corner[i, 1] - leg[0, 1]
@@ -585,13 +588,13 @@ def _is_needless(ends, turns, centres, signed, first, last, count, k):
 
 
 @compiled
-def _draw(scene, turns, string):
+def _draw(course, turns, string):
     """Return control points (3 k + 1, 2) of legs and arcs as cubic pieces, and what each piece (k,)
     is: 2 i for the leg to circle i, 2 i + 1 for the arc around it.
     """
     most = string.count * (_MOST_PIECES + 1) + 1
     points, part = np.empty((3 * most + 1, 2)), np.empty(most, dtype=np.int64)
-    points[0] = scene.ends[0]
+    points[0] = course.ends[0]
     pieces = 0
     for k in range(string.count + 1):
         begin, end = string.legs[k]
@@ -616,5 +619,5 @@ def _draw(scene, turns, string):
             part[pieces] = 2 * k + 1
             pieces += 1
         points[3 * pieces] = string.legs[k + 1, 0]
-    points[3 * pieces] = scene.ends[1]  # to the last bit
+    points[3 * pieces] = course.ends[1]  # to the last bit
     return points[: 3 * pieces + 1], part[:pieces]

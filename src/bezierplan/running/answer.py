@@ -29,6 +29,8 @@ MOST_BLENDED = 1_000
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 _LARGEST_WHOLE = 2**63 - 1
+# Beside fractions in a column, larger whole numbers are not exact.
+_EXACT = 2**53
 _TRUTHS = (bool, np.bool_)
 
 NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
@@ -81,6 +83,21 @@ def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan
     plan = plain(answer, names)
     check_ends(plan.path, problem)
     return plan
+
+
+def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
+    """Raise Unfit for columns of a planner's own that are others than those of its first run; or,
+    where they are to be finite, for an infinite number.
+    """
+    for name in {**first.extra, **plan.extra}:
+        pair = plan.extra.get(name), first.extra.get(name)
+        if None in pair or len({isinstance(value, _TRUTHS) for value in pair}) > 1:
+            raise Unfit(
+                f"column {name}: missing, or a truth and a number in two runs; a table needs the "
+                "same columns in each row"
+            )
+        if finite and math.isinf(pair[0]):
+            raise Unfit(f"column {name}: {pair[0]}; expected a finite number, or nan for none")
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:
@@ -205,8 +222,8 @@ def _extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
 def _column(name: str, value: Any) -> float | bool:
     if isinstance(value, _TRUTHS):
         return bool(value)
-    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _LARGEST_WHOLE):
-        raise Unfit(f"extra: {name}: expected a number within 64 bits, or a truth")
+    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _EXACT):
+        raise Unfit(f"extra: {name}: expected a number, a whole one of at most 2**53, or a truth")
     return int(value) if isinstance(value, Integral) else float(value)
 
 

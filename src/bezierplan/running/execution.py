@@ -257,18 +257,27 @@ def run_chunk(
     # The first run, and in a process of its own the last one. What needs no random numbers must not
     # be changed by others.
     again = [task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])]
-    warm, done = defaultdict(list), {}
+    warm, done, first, failures = defaultdict(list), {}, None, {}
     for reply in chunk_replies(chunk, met, tasks, again, moving):
-        k, repeat = order[reply.number]
-        outcome, trace = judged(every[k], repeat, reply)
-        if reply.number < 0:
-            warm[reply.number + len(order)].append(outcome)
+        (k, repeat), first = order[reply.number], first or reply.result
+        try:
+            outcome, trace = judged(every[k], repeat, reply)
+            if not moving:
+                with answer.of(tasks[reply.number].name):
+                    answer.check_columns(reply.result, first, is_file(chunk.planner))
+            if reply.number < 0:
+                warm[reply.number + len(order)].append(outcome)
+                continue
+            refuse_unrepeatable(warm[reply.number], outcome, chunk, deterministic)
+        except PlannerFailure as failure:
+            failures[str(failure)] = None
             continue
-        refuse_unrepeatable(warm[reply.number], outcome, chunk, deterministic)
         times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
         if moving:
             times |= rides.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
+    if failures:
+        raise PlannerFailure("\n".join(failures))
     runs, times, traces = zip(*(done[key] for key in sorted(done)))
     if not deterministic and not any(each["drew"] for each in runs):
         print(f"{told_chunk(chunk)}: {worker.UNDRAWN}\n", end="", file=sys.stderr, flush=True)

@@ -3,9 +3,10 @@ of all.
 """
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,11 +35,11 @@ _STRAIGHT = 1e-8
 _SAME = 1e-9
 
 
-def rounding(given: Collection[str]) -> dict[str, float]:
-    """Return settings of the planner with a turning radius, where some are given: a radius that is
-    asked for may make the path as long as it needs.
+def rounding(names: Collection[str]) -> dict[str, float]:
+    """Return settings of the planner with a turning radius, beside those of some names: a radius
+    that is asked for may make the path as long as it needs.
     """
-    if "turning_radius" in given:
+    if "turning_radius" in names:
         return {"excess": math.inf}
     return {"turning_radius": math.inf, "excess": EXCESS}
 
@@ -70,33 +71,47 @@ def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
     )
 
 
-def planned(
-    name: str,
-    plan: Callable[..., Any],
-    parts: Sequence[Problem],
-    settings: dict[str, Any],
-    seed: int,
-    file: str,
-) -> tuple[Plan, float]:
-    """What a planner answers to all legs, as plain values (`answer.accepted`), and its CPU seconds.
-
-    name: how messages about the planner begin. plan: its function. file: the path of its file,
-    which is executed in a process of its own; empty if it is not given as one. Raises
-    PlannerFailure for an answer that is none.
+class Run(NamedTuple):
+    """A call of a planner for each leg of a problem. label: how messages about it begin. bound: the
+    exact shortest path through all legs.
     """
+
+    label: str
+    problem: Problem
+    legs: Sequence[Problem]
+    bound: shortest_paths.Bound
+    settings: dict[str, Any]
+    seed: int
+
+
+def plans(
+    plan: Callable[..., Any], runs: Sequence[Run], file: str
+) -> Iterator[tuple[Run, Plan, float]]:
+    """Yield each run, what a planner answers in it, as plain values (`answer.accepted`), and its
+    CPU seconds.
+
+    plan: its function. file: the path of its file, which is executed in a process of its own; empty
+    if it is not given as one. Raises PlannerFailure for an answer that is none.
+    """
+    problems, tasks = {}, []
+    for run in runs:
+        for leg in run.legs:
+            task = worker.Task(run.label, f"{len(tasks)}", run.seed, run.settings)
+            problems[task.problem] = leg
+            tasks.append(task)
     if file:
-        problems = {str(number): part for number, part in enumerate(parts)}
-        tasks = [worker.Task(name, each, seed, settings) for each in problems]
-        made = [*process.isolated_replies(worker.Work(file, problems), tasks, (), name)]
-        answers, seconds = [each.result for each in made], sum(each.cpu for each in made)
+        replies = process.isolated_replies(worker.Work(file, problems), tasks, (), runs[0].label)
     else:
-        answers, seconds, _ = worker.timed(
-            lambda: [plan(part, np.random.default_rng(seed), **settings) for part in parts]
+        calls = (
+            partial(plan, problems[task.problem], task.generator(), **task.settings)
+            for task in tasks
         )
-    taken = {*TAKEN, *settings}
-    with answer.of(name):
-        accepted = [answer.accepted(plan, part, taken) for plan, part in zip(answers, parts)]
-    return joined(accepted), seconds
+        replies = (worker.Reply(0, *worker.timed(call), True) for call in calls)
+    for run in runs:
+        made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
+        with answer.of(run.label):
+            legs = [answer.accepted(each.result, leg, taken) for each, leg in zip(made, run.legs)]
+        yield run, joined(legs), sum(each.cpu for each in made)
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
@@ -130,6 +145,6 @@ def _has_corner(arriving: Path, leaving: Path) -> bool:
     return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
 
 
-def keeps_radius(asked: float, radius: float) -> bool:
+def keeps_radius(wish: float, radius: float) -> bool:
     """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
-    return radius >= asked * (1 - _SAME)
+    return radius >= wish * (1 - _SAME)

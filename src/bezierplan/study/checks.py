@@ -15,9 +15,12 @@ from typing import Any
 from pydantic import Field, create_model
 
 from bezierplan.analysis import metrics, statistics, study_code
-from bezierplan.analysis.claims.check import ClaimCheck
+from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.comparisons import mixed, told_apart
+from bezierplan.analysis.claims.variants import in_variant, variants
 from bezierplan.analysis.outcome import verdict
+from bezierplan.analysis.results import select
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
@@ -125,8 +128,11 @@ class Checks:
                     for name in compared.experiments:
                         check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
         with self.at():
-            for file in study.published_files():
-                published.read(Path(file))
+            named = " ".join(text_of(file, "") for file in study.folder.glob("*.yaml"))
+            for file in map(Path, study.published_files()):
+                header = {*next(iter(published.read(file).values()))}
+                if header.issuperset(published.COLUMNS) and file.stem not in named:
+                    raise Fault(f"{file}: no table names it; expected published: {file.name}")
             if file := study.verdict_file():
                 verdict.read(file)
         with self.at(relative(study.folder / "artefacts.yaml")):
@@ -366,11 +372,16 @@ class Checks:
             runs.check_where(table.primary, "primary")
 
     def prints(self) -> None:
-        """Looks are of methods; labels of what experiments.yaml names, of columns, metrics and
-        statistics, or of words of a function's table.
+        """Looks are of methods; labels tell these apart, and are of what experiments.yaml names, of
+        columns, metrics and statistics, or of words of a function's table.
         """
         study = self.study
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
+        printed: dict[str, str] = {}
+        for name in study.methods:
+            label = study.labels.get(name, name)
+            if (other := printed.setdefault(label, name)) != name:
+                raise Fault(f"labels: {other}, {name}: both {label}; expected a label for each")
         own = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
@@ -408,12 +419,16 @@ class Checks:
     def claim(self, identity: str, claim: Claim) -> None:
         """The names of its checks exist, and its variants select runs."""
         self.names(claim)
+        first, *_ = variants(claim)
+        judged = in_variant(claim.checks, first, first)
         for number, check in enumerate(claim.checks):
             with self.at("checks", str(number)):
                 self.names(check)
                 if check.cells and check.experiments:
                     values = self.runs(tuple(check.experiments), True).values(check.cells)
                     check_all(set(check.groups_named) - {"rest"}, values, "group")
+                if isinstance(check, OfRuns):
+                    self.unmixed(judged[number])
         experiments = {name: None for check in claim.checks for name in check.experiments}
         for column, entries in claim.variants.items():
             for value in (each for entry in entries for each in one_or_list(entry)):
@@ -424,6 +439,25 @@ class Checks:
                     self.runs(tuple(experiments), True).check_where(
                         {column: value}, "variants", claim=True
                     )
+
+    def unmixed(self, check: OfRuns) -> None:
+        """A unit of a comparison has runs of one experiment, condition and method. Ranks are taken
+        among the runs of an artefact alone.
+        """
+        rows = self.runs(tuple(check.experiments), True).rows
+        planned = check.where.keys() & {*rows} - {"repeat"}
+        rows = select(rows, {column: check.where[column] for column in planned})
+        factor = "" if check.metric == "rank" else mixed(check, rows)
+        if factor:
+            vary = [self.study.experiments[name].vary for name in check.experiments]
+            columns = dict.fromkeys(["problem", *itertools.chain(*vary)])
+            apart = told_apart(check)
+            several = [name for name in columns if name not in apart and rows[name].nunique() > 1]
+            raise Fault(
+                f"mixes several values of {factor}; expected every: "
+                f"[{', '.join(several) if factor == 'condition' else factor}], or pool, or where "
+                "with one of them"
+            )
 
     def assumption(self, identity: str, assumption: AssumptionEntry) -> None:
         """Its names are those of the study, and every alternative is a valid value of what it

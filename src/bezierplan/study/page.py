@@ -1,6 +1,7 @@
 """The jobs that show all results of a scale: the page, and the check of what it shows."""
 
 import hashlib
+import os
 from pathlib import Path
 
 from bezierplan.analysis.jobs import Verification
@@ -14,7 +15,7 @@ from bezierplan.figures.page.page_job import (
     StudyView,
 )
 from bezierplan.machine.digest import content_digest
-from bezierplan.places import STUDIES
+from bezierplan.places import STUDIES, relative
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
@@ -60,7 +61,8 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
 
 def verified(studies: Studies, scale: str, root: str = "") -> Verification:
     """What the page shows is judged again."""
-    return Verification(f"{root}results/{scale}", shows=shows(studies, scale, root))
+    places = {key: os.path.join(".", relative(study.folder)) for key, study in studies.items()}
+    return Verification(f"{root}results/{scale}", places, shows=shows(studies, scale, root))
 
 
 def page(studies: Studies, scale: str, root: str = "") -> Page:

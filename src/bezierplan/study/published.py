@@ -4,6 +4,7 @@ numbers fit the table that they are compared with.
 
 import csv
 import io
+import math
 import re
 from contextlib import suppress
 from functools import cache
@@ -90,8 +91,15 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         metric = table.reads.get(row["metric"], row["metric"])
         check_known(f"{metric} {row['statistic']}", shown, f"{where}: metric and statistic")
         of_metric = metrics.unit(row["metric"], unit)
+        share, least = row["statistic"] == "share", metrics.METRICS[metric].least
+        low = 0.0 if share or isinstance(least, str) else min(least, 0.0)
         for column, fits, wanted in (
-            ("value", row["value"], "a number"),
+            (
+                "value",
+                row["value"] and low <= float(row["value"]) <= (1.0 if share else math.inf),
+                f"a number of at least {low:g}{' and at most 1' * share}, a {row['statistic']} of "
+                f"{metric}",
+            ),
             (
                 "n",
                 re.fullmatch("([1-9][0-9]*)?", row["n"]),

@@ -4,6 +4,7 @@ first job starts, and reported in one line (`checked.Fault`).
 
 import contextlib
 import hashlib
+import json
 import os
 import re
 import sys
@@ -17,7 +18,7 @@ import pydantic
 from bezierplan.machine.modules import code_of
 from bezierplan.places import PACKAGE, STUDIES, TREE, cache_folder, relative
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, check_known, closest
+from bezierplan.schema.checked import Fault, check_all, closest
 from bezierplan.schema.model import Model, named, parsed, sound_part
 from bezierplan.schema.words import told
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
@@ -50,9 +51,33 @@ def read_config(config: Mapping[str, Any]) -> Folders:
                 f"{relative(folder)}{closest(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
-    for name in content.settings:
-        check_known(name, [folder.resolve().name for folder in folders], f"{location}: settings")
+    known = [folder.resolve().name for folder in (*folders, *STUDIES.glob("*"))]
+    check_all(content.settings, known, f"{location}: settings")
     return folders
+
+
+def on_page(scale_folder: str | Path) -> dict[str, str]:
+    """Return the studies that the page in the folder of a scale shows, by name, each with the word
+    that names it in a configuration, as far as it has results; none without such a page.
+    """
+    try:
+        words = dict(json.loads(Path(scale_folder, "verified.json").read_text())["studies"])
+    except (OSError, ValueError, TypeError, KeyError):
+        return {}
+    return {key: word for key, word in words.items() if Path(scale_folder, key).is_dir()}
+
+
+def load_others(words: Mapping[str, str], config: Mapping[str, Any]) -> dict[str, Study]:
+    """Return the studies of pages that nobody asked for, so that these keep them. One that is gone
+    or has a fault is told on stderr, and left out.
+    """
+    studies = {}
+    for key, own in words.items():
+        try:
+            studies |= load(read_config({**config, "studies": [own]}))
+        except Fault as fault:
+            print(f"the page leaves out the study {key}: {fault.lines[0]}", file=sys.stderr)
+    return studies
 
 
 def asked(folders: Folders, targets: Iterable[str]) -> Folders:
@@ -209,7 +234,7 @@ def _strange(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
     maps = [name for home in workspaces.values() for _, what, name in named(home) if what == "file"]
     return [
         f"{relative(file)}: no file of a study{closest(file.name, known)}"
-        for file in sorted([*folder.glob("*.yaml"), *folder.glob("*.yml")])
+        for file in sorted(each for each in folder.glob("*.y*ml*") if each.suffix != ".yaml~")
         if file.name not in (*known, *maps)
     ]
 

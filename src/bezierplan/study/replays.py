@@ -23,7 +23,7 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
     if len(parts) != 5:
         raise Fault(
             f"{name}: not the name of a run; expected study/experiment/condition/method/repeat, "
-            "such as song2016/routes/15_240/smooth/3"
+            "such as song2016/routes/15_240/smooth/2"
         )
     key, experiment, condition_name, method, repeat = parts
     check_known(key, studies, f"{name}: study")

@@ -7,16 +7,18 @@ from typing import Any
 from bezierplan.running.recheck import StoredRuns
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import jobs
+from bezierplan.study import jobs, reading
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
 
 def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Where the studies lie whose results a scale's folder holds, by name: as a configuration or
-    further words say, or in the working folder. Raises Fault for one that is in none of these.
+    """Where the studies lie whose results a scale's folder holds, by name: as a configuration,
+    further words or the page say, or in the working folder. Raises Fault for one that is in none of
+    these.
     """
-    known = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
+    named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
+    known = reading.on_page(folder) | named
     found = {problems.parent.name for problems in folder.glob("*/problems")}
     for key in sorted(found - known.keys()):
         if not Path(key, "experiments.yaml").is_file():

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
+# Places in degrees have an extent of at most this share of their distance from the origin.
+_AWAY = 0.02
+
 ROLES = ("border", "obstacle", "start", "target")
 
 
@@ -51,8 +54,9 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
     what is skipped, and of obstacles that are cut at the border.
 
     Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry
-    that is no polygon, coordinates out of range, no border, a margin beside a border, an obstacle
-    that is invalid or too thin for the checker, and gaps that are neither closed nor open.
+    that is no polygon, coordinates out of range or in degrees, no border, a margin beside a border,
+    an obstacle that is invalid or too thin for the checker, and gaps that are neither closed nor
+    open.
     """
     import shapely
 
@@ -62,6 +66,8 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
         for number, feature in enumerate(_features(content))
         for shape in _shapes(number, feature)
     ]
+    if shapes and "crs" not in content:
+        _refuse_degrees(shapes)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
     borders = [shape for shape in shapes if shape.role == "border"]
     limits, outside = _border(borders, obstacles, content.get("bbox"), margin)
@@ -89,6 +95,22 @@ def _content(text: str) -> dict[str, Any]:
     if any(name in named for name in ("CRS84", "4326", "WGS84", "WGS 84")):
         raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths")
     return content
+
+
+def _refuse_degrees(shapes: list[Shape]) -> None:
+    """Raise ValueError for places that look like longitudes and latitudes, which RFC 7946 asks for:
+    within their limits, and far from the origin beside their extent.
+    """
+    import shapely
+
+    bounds = shapely.total_bounds([shape.polygon for shape in shapes])
+    low, high = bounds[:2], bounds[2:]
+    far, extent = np.maximum(-low, high), max(high - low)
+    if (far <= (180, 90)).all() and extent < _AWAY * max(far):
+        raise ValueError(
+            f"places about {low[0]:g}, {low[1]:g} with an extent of {extent:.2g} look like degrees; "
+            "expected x and y as lengths: project them, or move a map in metres near the origin"
+        )
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

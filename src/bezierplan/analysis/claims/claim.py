@@ -69,7 +69,8 @@ class Claim(Model):
     variants: dict[str, listed(Values)] = Field(
         {},
         description="column → list of values: the claim is judged with the first one, and once "
-        "more, in a row of its own, with each of the others, if any, in its place",
+        "more, in a row of its own, with each of the others, if any, in its place; null is no "
+        "condition",
         min_length=1,
     )
     checks: list[Annotated[ClaimCheck, one_of("test", kinds())]] = Field(

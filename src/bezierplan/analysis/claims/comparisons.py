@@ -94,12 +94,13 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
         raise Untestable("no run is of the conditions that the claim names")
     column, unit = check.cells, check.replicate
     every, pool = check.every, check.pool
-    told_apart = [*every, *pool, *([column] if column else [])]
     tables = _published_tables(check, claim, material)
     of_tables = [key for table in tables for key in table.keys if key in runs]
-    keys = list(dict.fromkeys(["experiment", *told_apart, *of_tables]))
+    keys = list(dict.fromkeys(["experiment", *told_apart(check)[:-1], *of_tables]))
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
-    _refuse_mixtures(check, claim, runs, [*told_apart, unit])
+    if factor := mixed(check, runs):
+        what = f"claim {claim.id}: {check.test} of {check.metric}"
+        raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     paired = check.paired
@@ -221,20 +222,20 @@ def _failure(check: OfRuns) -> float:
     return np.nan
 
 
-def _refuse_mixtures(check: OfRuns, claim: Claim, runs: pd.DataFrame, keys: list[str]) -> None:
-    """Raise Fault if a unit of a comparison, as identified by the keys, mixes several experiments,
-    conditions or methods.
+def told_apart(check: OfRuns) -> list[str]:
+    """Return the columns that identify a unit of a comparison; the number of the unit is last."""
+    return [*check.every, *check.pool, *filter(None, [check.cells]), check.replicate]
+
+
+def mixed(check: OfRuns, runs: pd.DataFrame) -> str:
+    """Return what a unit of a comparison mixes several values of: experiment, condition or method;
+    empty if nothing.
     """
-    distinct = runs[
-        [*keys, *(factor for factor in _FACTORS if factor not in keys)]
-    ].drop_duplicates()
-    mixed = distinct[distinct.duplicated(keys, keep=False)]
-    if not mixed.empty:
-        factor = next(
-            factor for factor in _FACTORS if factor not in keys and mixed[factor].nunique() > 1
-        )
-        what = f"claim {claim.id}: {check.test} of {check.metric}"
-        raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
+    keys = told_apart(check)
+    factors = [factor for factor in _FACTORS if factor not in keys]
+    distinct = runs[[*keys, *factors]].drop_duplicates()
+    several = distinct[distinct.duplicated(keys, keep=False)]
+    return next((factor for factor in factors if several[factor].nunique() > 1), "")
 
 
 def _known(value: Any) -> Any:

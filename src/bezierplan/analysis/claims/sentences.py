@@ -85,6 +85,9 @@ def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
     """Values by column, as printed: a label, or the value after the name of its column."""
     words = []
     for column, value in values.items():
+        if value is True:
+            words.append(column_name(column, labels))
+            continue
         names = [labels.get(str(each), _plain(each)) for each in one_or_list(value)]
         known = all(str(each) in labels for each in one_or_list(value))
         words.append(("" if known else f"{column_name(column, labels)} ") + " and ".join(names))

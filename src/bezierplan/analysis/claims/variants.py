@@ -31,13 +31,13 @@ def in_variant(
     those.
 
     Lists are replaced member by member. A column whose first value no check names becomes one more
-    condition of `where`.
+    condition of `where`, and None there is no condition.
     """
     for column, chosen in assignment.items():
         pairs = dict(zip(one_or_list(first[column]), one_or_list(chosen), strict=True))
         if any(_exchanged(check, column, dict.fromkeys(pairs)) != check for check in checks):
             checks = [_exchanged(check, column, pairs) for check in checks]
-        else:
+        elif chosen is not None:
             checks = [
                 check.but(where=check.where | {column: chosen}) if has_runs(check) else check
                 for check in checks

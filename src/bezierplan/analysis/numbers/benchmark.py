@@ -2,20 +2,18 @@
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path as FilePath
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import answers
-from bezierplan.analysis.results import of_folder
 from bezierplan.geometry import shortest_paths
 from bezierplan.places import TREE
-from bezierplan.planners import Plan
-from bezierplan.running.answer import accepted
 from bezierplan.schema.checked import check_all
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem
+
+_OF_FREE = ["length", "excess", "curvature"]
+_MEDIANS = [*_OF_FREE, "evaluations", "cpu_s"]
 
 STORED = TREE / "docs" / "outcome" / "benchmark.csv"
 """Summaries of the papers' methods, at the papers' numbers of runs."""
@@ -23,17 +21,16 @@ STORED = TREE / "docs" / "outcome" / "benchmark.csv"
 
 def summaries(runs: pd.DataFrame) -> pd.DataFrame:
     """A row for each problem and method of runs: problem, method, number of runs, feasible (their
-    share), excess (median length of these over the exact shortest path's, minus 1), evaluations
-    (median).
+    share), the medians of length, excess (over the exact shortest path's, `shortest`) and curvature
+    of these, and those of evaluations and cpu_s of all.
     """
-    free = runs["feasible"].astype(bool)
-    excess = (runs["length"] / runs["bound"] - 1).where(free)
-    groups = runs.assign(feasible=free, excess=excess).groupby(["problem", "method"], sort=False)
+    rows = runs.assign(excess=runs["length"] / runs["shortest"] - 1).astype({"feasible": bool})
+    rows[_OF_FREE] = rows[_OF_FREE].where(rows["feasible"])
+    groups = rows.groupby(["problem", "method"], sort=False)
     return groups.agg(
         runs=("feasible", "size"),
         feasible=("feasible", "mean"),
-        excess=("excess", "median"),
-        evaluations=("evaluations", "median"),
+        **{name: (name, "median") for name in _MEDIANS},
     ).reset_index()
 
 
@@ -45,7 +42,8 @@ def scores(rows: pd.DataFrame) -> pd.DataFrame:
     rows = rows.round({"excess": 6}).sort_values(["feasible", "excess"], ascending=[False, True])
     order = rows.groupby(["feasible", "excess"], sort=False, dropna=False).ngroup()
     methods = rows.assign(rank=order.groupby(rows["problem"]).rank()).groupby("method")
-    means = {"runs": "sum", "feasible": "mean", "excess": "median", "evaluations": "median"}
+    medians = dict.fromkeys(rows.columns.intersection(_MEDIANS, sort=False), "median")
+    means = {"runs": "sum", "feasible": "mean"} | medians
     table = methods.agg({"problem": "nunique"} | means | {"rank": "mean"})
     return table.rename(columns={"problem": "problems"}).sort_values("rank", kind="stable")
 
@@ -54,30 +52,6 @@ def stored(experiment: str) -> pd.DataFrame:
     """The summaries of the papers' methods on an experiment, `study/name`."""
     rows = pd.read_csv(STORED)
     return rows[rows["experiment"] == experiment].drop(columns="experiment")
-
-
-def of_results(folder: FilePath, experiments: Iterable[str]) -> pd.DataFrame:
-    """The summaries of experiments, each `study/name`, in results of a scale."""
-    tables = []
-    for experiment in experiments:
-        study, _, name = experiment.partition("/")
-        rows = summaries(of_folder(folder / study, name).runs)
-        tables.append(rows.assign(experiment=experiment))
-    return pd.concat(tables)[["experiment", *tables[0].columns.drop("experiment")]]
-
-
-def run(problem: Problem, path: Path | None, evaluations: float) -> dict[str, Any]:
-    """A run from its path. Raises ValueError for one that does not join start and target."""
-    if path:
-        accepted(Plan.of_one(path, 0.0, "read"), problem, ())
-    verdict = answers.verdict(problem, shortest_paths.shortest_path(problem), path)
-    return {
-        "problem": problem.name,
-        "feasible": verdict.get("feasible", False),
-        "length": verdict.get("length", np.nan),
-        "bound": verdict["shortest"],
-        "evaluations": evaluations,
-    }
 
 
 def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path | None, float]]:

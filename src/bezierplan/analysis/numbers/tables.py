@@ -293,6 +293,6 @@ def _decimals(number: float, decimals: int, counted: bool) -> int:
     """The given decimals, or more if a number, unless it is counted, needs them for its significant
     digits.
     """
-    if counted or not number or np.isnan(number):
+    if counted or not number or not np.isfinite(number):
         return decimals
     return max(decimals, SIGNIFICANT - 1 - math.floor(math.log10(abs(number))))

@@ -2,15 +2,12 @@
 summary show first.
 """
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import words
-from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import baseline_comparison, comparison
 
 PAPERS = {
@@ -38,11 +35,6 @@ LEGEND = (
     "if it lies in our 95 % prediction interval, narrow enough to rule out other plausible values, "
     "or is the length of a path that we can name. Most *cannot be tested*: the paper does not "
     "print the map, or define the quantity."
-)
-
-BESIDE = (
-    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
-    "needs no search and is always free. A bend below 1 is smoother."
 )
 
 CLOSE = 0.1
@@ -125,24 +117,6 @@ def word(claims: pd.DataFrame) -> str:
     if (decided == "hold").all():
         return "reproduced"
     return "not reproduced" if (decided == "fail").all() else "in part"
-
-
-def markdown(head: Headline, addresses: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The headline as markdown: the sentences, the tables, and what their words mean. addresses: of
-    the studies' pages, by name.
-    """
-    parts = [f"**{' '.join(head.sentences)}**"]
-    for table, headings, legend in (
-        (head.papers, PAPERS, LEGEND),
-        (head.methods, METHODS, BESIDE),
-    ):
-        if not table.empty:
-            shown = table.rename(
-                columns=headings,
-                index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
-            )
-            parts += [table_text(shown), legend]
-    return "\n\n".join(parts)
 
 
 def deviations(numbers: pd.DataFrame) -> np.ndarray:

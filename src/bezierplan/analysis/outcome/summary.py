@@ -112,25 +112,3 @@ def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
     return all(
         one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key]))
     )
-
-
-def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
-    """Claims of scale extended with one more column after the verdict: `verdict_papers_size`, that
-    of the same claim at scale full.
-    """
-    keys = ["study", "id", "variant"]
-    theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
-    both = claims.merge(theirs, on=keys, how="left", validate="one_to_one")
-    columns = list(claims)
-    columns.insert(columns.index("verdict") + 1, "verdict_papers_size")
-    return both[columns]
-
-
-def with_block(text: str, name: str, block: str) -> str:
-    """The text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises
-    ValueError if there is no such part.
-    """
-    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
-    if not 0 <= text.find(begin) < text.find(end):
-        raise ValueError(f"no part between {begin} and {end}")
-    return f"{text[: text.find(begin)]}{begin}\n{block}\n{text[text.find(end) :]}"

@@ -223,10 +223,15 @@ class Pick(Model):
         description="in addition to one of these, the name of a metric: "
         "only runs that have more than 0 of it count",
     )
+    layout: Quantity = Field(
+        None,
+        description="in addition to one of these, a column of numbers of the runs table: "
+        "only the layout counts in whose runs it varies most",
+    )
 
     @model_validator(mode="after")
     def _check_one(self) -> Pick:
-        ways = self.model_fields_set - {"having"}
+        ways = self.model_fields_set - {"having", "layout"}
         if len(ways) != 1:
             raise wrong(
                 f"{len(ways)} keys; expected {{lowest: column}}, "
@@ -237,7 +242,8 @@ class Pick(Model):
 
 PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that have more than 0 of it"
+    "with having: metric, only of those that have more than 0 of it, and with layout: column, only "
+    "of the layout in which that varies most"
 )
 
 

@@ -46,6 +46,9 @@ _STEPS = 600
 # Widths of the first and of the last of several paths.
 _WIDEST, _NARROWEST = 2.0, 1.0
 
+# Curves without points that bend them: the corners of one lie on it, the other has tangents.
+_UNCONTROLLED = ("polyline", "ferguson")
+
 _CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
 # In the order of the legend.
@@ -53,7 +56,6 @@ LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
     "control": {**_CONTROL_POINT, "label": "control points"},
     "points": {**_CONTROL_POINT, "label": "control points"},
-    "nodes": {**_CONTROL_POINT, "label": "nodes"},
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "collision": style.mark("X", 8, style.BLACK, label="first collision", zorder=6),
@@ -91,7 +93,7 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
     if pick.having is not None:
         runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
-    run = pick_run(runs, pick.plain("having"))
+    run = pick_run(runs, pick.plain("having", "layout"))
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
     return run, names | {
@@ -146,8 +148,8 @@ class Options(RunsPanel):
     )
     control: Literal["all", "points", "none"] = Field(
         "all",
-        description="whether control points are drawn with their hull (all; left out: this), alone "
-        "(points), or not (none)",
+        description="whether control points, which polylines have none of, are drawn with their "
+        "hull (all; left out: this), alone (points), or not (none)",
     )
     measure: Metric = Field(
         "length",
@@ -169,8 +171,17 @@ class Options(RunsPanel):
     )
 
     def source(self, sources: Sources) -> Results | None:
-        """Runs; nothing for an explicit path."""
-        return None if self.experiment is None else super().source(sources)
+        """Runs, of one layout if one is picked; nothing for an explicit path."""
+        from bezierplan.analysis.results import select
+
+        if self.experiment is None:
+            return None
+        shown = super().source(sources)
+        if self.pick.layout is None:
+            return shown
+        values = sources.results[self.experiment].runs.groupby("layout")[self.pick.layout]
+        layout = (values.max() - values.min()).idxmax()
+        return shown._replace(runs=select(shown.runs, {"layout": layout}))
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
@@ -187,8 +198,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     Columns: those of `picked`, for a run; part (start, target, bound: the exact shortest path,
     hull, control or points, path, collision: a path's first one, if any, and appeared and vanished:
     centres of changed cells), x, y (in the workspace's unit). Without a run to show, only what
-    belongs to the problem. Only curves within their hull have one, and control points are left out
-    if some are tangents.
+    belongs to the problem. Only curves within their hull have one, and polylines and curves with
+    tangents no control points.
 
     With `hue`, paths are drawn without control points, and the column `measure` has each run's
     value of that metric. With `printed`, the column of this name has the shortest length of that
@@ -246,11 +257,10 @@ def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
     import shapely
 
     places = {}
-    if path.curve in curves.B_SPLINES and control == "all":
-        places["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
-    if path.curve != "ferguson" and control != "none":
-        alone = "nodes" if path.curve == "polyline" else "points"
-        places["control" if control == "all" else alone] = path.points
+    if path.curve not in _UNCONTROLLED and control != "none":
+        places["control" if control == "all" else control] = path.points
+        if path.curve in curves.B_SPLINES and control == "all":
+            places["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
     return places | {"path": steps(path)}
 
 

@@ -210,13 +210,21 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:
     """Draw the workspace of what a panel shows, with its scale; more: as for `shade`."""
-    shade(axes, parts(home), **more)
+    from matplotlib.colors import ListedColormap
+
+    flat = isinstance(home, Grid) and not home.shapes and home.heights is None
+    # Outlines of small cells would hide what they surround.
+    if flat and home.occupied.size > _MOST_OUTLINES:
+        colours = ListedColormap([style.FREE, style.OCCUPIED])
+        axes.imshow(home.occupied, colours, origin="lower", extent=home.bounds, vmin=0, vmax=1)
+    else:
+        shade(axes, parts(home), **more)
     scale(axes, home.unit)
 
 
 def scale(axes: Axes, unit: str) -> None:
     """Label the two coordinates of a workspace, with ticks at edges of cells of side 1."""
-    axes.locator_params(nbins=8, steps=[1, 2, 4, 5, 10])
+    axes.locator_params(nbins="auto", steps=[1, 2, 4, 5, 10])
     if np.abs([axes.get_xlim(), axes.get_ylim()]).max() >= 1e5:
         # Projected coordinates: long numbers, written in full, so few of them.
         axes.ticklabel_format(style="plain", useOffset=False)
@@ -251,12 +259,8 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
-    # Outlines of small cells would hide what they surround.
-    area = np.ptp(corners["x"]) * np.ptp(corners["y"])
-    dense = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
-    bare = {"edgecolor": "face", "rasterized": True} if dense else {}
     for part, own in cells.groupby("part"):
-        draw_cells(axes, own, _CELLS[part] | bare)
+        draw_cells(axes, own, _CELLS[part])
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or len(cells) else _OBSTACLE

@@ -167,7 +167,8 @@ def _matrix(graph: _Graph) -> "csr_array":
 
     count = len(graph.nodes.names)
     lengths = np.maximum(graph.lengths, NO_LENGTH)
-    return coo_array((lengths, tuple(graph.ends.T)), shape=(count, count)).tocsr()
+    ends = graph.ends.T.astype(np.int32)  # older versions of scipy take no wider ones
+    return coo_array((lengths, tuple(ends)), shape=(count, count)).tocsr()
 
 
 @compiled

@@ -1,10 +1,9 @@
 """One-dimensional chaotic maps: sequences of numbers in [0, 1] used instead of random ones
 (tharwat2018, Section 3.3, eqs. 9 to 16).
 
-Three formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x -
+Two formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x -
 floor(1/x), which is `gauss`; the printed form is `gauss_printed`, whose values exceed 1. In eq. 12
-"mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4; this is the usual sine map
-with a = 4. `constant` is a baseline: it stays where it starts.
+"mod 1" applies to the whole right-hand side. `constant` is a baseline: it stays where it starts.
 """
 
 import math
@@ -22,12 +21,13 @@ Map = IntEnum(
 )
 MAPS = tuple(Map.__members__)
 
-# tharwat2018: eq. 11, the two constants of eq. 12, and the text below eq. 13.
+# tharwat2018: eqs. 10 and 11, the two constants of eq. 12, and the text below eq. 13.
+SINGER_X4 = 13.3
 TENT_PEAK = 0.7
 CIRCLE_A, CIRCLE_B = 0.5, 0.2
 LOGISTIC_A = 4.0
-# What the paper leaves open or rounds: the coefficient of x^4 in eq. 10, P of eq. 15, a of eq. 16.
-SINGER_X4, PIECEWISE_P, SINUSOIDAL_A = 13.302875, 0.4, 2.3
+# What the paper leaves open: a of eq. 14, below 4, P of eq. 15, a of eq. 16.
+SINE_A, PIECEWISE_P, SINUSOIDAL_A = 3.99, 0.4, 2.3
 
 # Values closer than this count as equal: a sequence that moves less has collapsed.
 STANDSTILL = 1e-12
@@ -132,7 +132,7 @@ def _next(number, x, singer_mu):
     if number == Map.logistic:
         return LOGISTIC_A * x * (1.0 - x)
     if number == Map.sine:
-        return math.sin(math.pi * x)
+        return SINE_A / 4.0 * math.sin(math.pi * x)
     if number == Map.piecewise:
         nearer = min(x, 1.0 - x)  # the map is symmetric about 0.5
         if nearer <= PIECEWISE_P:

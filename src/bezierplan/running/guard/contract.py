@@ -34,6 +34,8 @@ SEEDS = (0, 0, 1, 2)
 
 SEALED = "sealed target"
 
+ELSEWHERE = "another plan in another process; hash(), id() and the order of a set differ"
+
 # Rows from the top; S start, T target, B both, each in the middle of its cell.
 _PICTURES = {
     "open": ("......", ".S..T.", "..#...", "......"),
@@ -124,25 +126,36 @@ def _findings(
     planner: str, module: ModuleType, settings: dict[str, Any]
 ) -> Iterator[ContractFinding]:
     by_name = {problem.name: problem for problem in problems(module)}
-    try:
-        made = replies(planner, settings, by_name, SEEDS)
-        again = replies(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
-    except PlannerFailure as failure:
-        yield ContractFinding("all problems", "plan", False, str(failure))
-        return
-    plans_of = {name: [each.result for each in own] for name, own in made.items()}
-    columns = next(iter(plans_of.values()))[0].extra.keys()
-    keeps_best = getattr(module, "keeps_best", True)
-    for name, plans in plans_of.items():
+    keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
+    exact, names = getattr(module, "exact", False), {*TAKEN, *settings}
+    plans_of: dict[str, list[Plan]] = {}
+    draws = False
+    for name, problem in by_name.items():
+        # A slow planner's findings come one problem after the other.
+        try:
+            (made,) = replies(planner, settings, {name: problem}, SEEDS).values()
+        except PlannerFailure as failure:
+            yield ContractFinding(name, "plan", False, str(failure).splitlines()[0])
+            continue
+        plans = plans_of[name] = [each.result for each in made]
+        draws |= any(each.drew for each in made)
+        first = next(iter(plans_of.values()))[0]
         for fact, detail, fault in (
-            ("plan", *_is_valid(plans, by_name[name], {*TAKEN, *settings}, columns)),
+            ("plan", *_is_valid(plans, problem, names, first, is_file(planner))),
             ("history", "", _history_fault(plans, keeps_best)),
-            ("budget", *_budget(plans, settings.get("evaluations", math.inf))),
-            ("claims", *_claims(plans, by_name[name], getattr(module, "exact", False))),
-            ("random numbers", "", _repeats(plans, [each.result for each in again.get(name, ())])),
+            ("budget", *_budget(plans, budget)),
+            ("claims", *_claims(plans, problem, exact)),
+            ("random numbers", "", _repeats(plans[0], plans[1])),
         ):
             yield ContractFinding(name, fact, not fault, fault or detail)
-    draws = any(each.drew for own in made.values() for each in own)
+    if not plans_of:
+        return
+    if is_file(planner):
+        met = {name: by_name[name] for name in plans_of}
+        for name, (there,) in replies(planner, settings, met, SEEDS[:1], 1).items():
+            one, again, *_ = plans_of[name]
+            if not _repeats(one, again) and _repeats(one, there.result):
+                yield ContractFinding(name, "random numbers", False, ELSEWHERE)
     fault = "" if draws else worker.UNDRAWN
     if getattr(module, "deterministic", False):
         differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
@@ -176,18 +189,14 @@ def replies(
 
 
 def _is_valid(
-    plans: list[Plan], problem: Problem, names: set[str], columns: Any
+    plans: list[Plan], problem: Problem, names: set[str], first: Plan, finite: bool
 ) -> tuple[str, str]:
     for plan in plans:
         try:
             answer.accepted(plan, problem, names)
+            answer.check_columns(plan, first, finite)
         except answer.Unfit as fault:
             return "", str(fault)
-        if plan.extra.keys() != columns:
-            return "", (
-                f"extra: {min(plan.extra.keys() ^ columns)}: not in every plan; a table needs the "
-                "same columns in each row"
-            )
     return f"{sum(plan.path is not None for plan in plans)} paths of {len(plans)} plans", ""
 
 
@@ -229,16 +238,11 @@ def _claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]
     return detail, detail if exact and not all(claims) else ""
 
 
-def _repeats(plans: list[Plan], elsewhere: Sequence[Plan]) -> str:
-    """What is wrong if runs with the same generator do not have the same bits."""
-    first, again, *_ = ([*map(repr, plain.packed(plan)["Plan"])] for plan in plans)
-    if again != first:
-        field = next(name for name, *two in zip(Plan._fields, first, again) if two[0] != two[1])
-        return (
-            f"{field}: another value from the same generator; all random numbers come from rng, "
-            "and nothing from a clock or an earlier run"
-        )
-    for there in elsewhere:
-        if [*map(repr, plain.packed(there)["Plan"])] != first:
-            return "another plan in another process; hash(), id() and the order of a set differ"
-    return ""
+def _repeats(first: Plan, again: Plan) -> str:
+    """What is wrong if two runs with the same generator do not have the same bits."""
+    one, other = ([*map(repr, plain.packed(plan)["Plan"])] for plan in (first, again))
+    field = next((name for name, *two in zip(Plan._fields, one, other) if two[0] != two[1]), "")
+    return field and (
+        f"{field}: another value from the same generator; all random numbers come from rng, and "
+        "nothing from a clock or an earlier run"
+    )

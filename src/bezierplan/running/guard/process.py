@@ -140,8 +140,10 @@ def _log(printed: Path, name: str) -> None:
 
 
 def _read(lines: Path, name: str, end: str) -> list[Any]:
-    """The answers among the lines of a process. Raises PlannerFailure."""
-    replies = []
+    """The answers among the lines of a process. Raises PlannerFailure, with a line for each run
+    that fails.
+    """
+    replies, failures = [], {}
     # What follows the last line break was cut off.
     for line in lines.read_text(encoding="utf-8").split("\n")[:-1]:
         ((kind, value),) = json.loads(line).items()
@@ -150,9 +152,13 @@ def _read(lines: Path, name: str, end: str) -> list[Any]:
         elif kind == "answer":
             replies.append(value)
         elif kind == "fails":
-            failure = PlannerFailure(value[0])
-            failure.add_note(value[1])
-            raise failure
+            failures.setdefault(*value)
         else:
-            return replies
-    raise PlannerFailure(f"{name}: {end}")
+            break
+    else:
+        failures[f"{name}: {end}"] = ""
+    if not failures:
+        return replies
+    failure = PlannerFailure("\n".join(failures))
+    failure.add_note("\n".join(failures.values()))
+    raise failure

@@ -133,17 +133,24 @@ def replies(
     tasks: Sequence[Task],
     again: Sequence[Task] = (),
     begin: Callable[[str], None] = lambda name: None,
+    goes_on: bool = False,
 ) -> Iterator[Reply]:
     """What a planner makes of tasks, one after the other. again: first the task of warm-up runs
     before them, of which the first and the last are yielded. begin: told the name of each run.
-    Raises PlannerFailure, naming the run.
+    Raises PlannerFailure, naming the run. goes_on: such a failure is the run's result instead.
     """
 
     def one(number: int, task: Task) -> Reply:
         begin(task.name)
         rng = task.generator()
-        with answer.of(task.name):
-            return Reply(number, *timed(partial(work.once, task, rng)), drew(task.generator(), rng))
+        try:
+            with answer.of(task.name):
+                made = timed(partial(work.once, task, rng))
+        except PlannerFailure as failure:
+            if not goes_on:
+                raise
+            return Reply(number, failure, 0.0, 0.0, True)
+        return Reply(number, *made, drew(task.generator(), rng))
 
     if again:
         yield from warm_up(partial(one, -len(tasks), again[0]))
@@ -187,14 +194,19 @@ def warm_up(once: Callable[[], Reply]) -> list[Reply]:
 
 def plain_answers(
     begin: Callable[[str], None], work: Work, tasks: Sequence[Task], again: Sequence[Task]
-) -> Iterator[Reply]:
-    """`replies` with plain values."""
-    for reply in replies(work, tasks, again, begin):
-        found = reply.result
-        with answer.of(tasks[reply.number].name):
-            if work.function == "plan" and not work.worlds:
-                found = answer.plain(found)
-        yield reply._replace(result=plain.packed(found))
+) -> Iterator[Reply | PlannerFailure]:
+    """Yield `replies` with plain values; of a run that fails, what is wrong with it."""
+    for reply in replies(work, tasks, again, begin, goes_on=True):
+        task, found = tasks[reply.number], reply.result
+        try:
+            if isinstance(found, PlannerFailure):
+                raise found
+            with answer.of(task.name):
+                if work.function == "plan" and not work.worlds:
+                    found = answer.plain(found)
+            yield reply._replace(result=plain.packed(found))
+        except PlannerFailure as failure:
+            yield failure
 
 
 # --------------------------------------------------------------------------------------------------
@@ -207,9 +219,9 @@ def main(job_file: str, lines_file: str) -> None:
     """
     planner, name, work = pickle.loads(Path(job_file).read_bytes())
     end_with_parent()
-    for name, most in LIMITS.items():
+    for limit, most in LIMITS.items():
         with suppress(ValueError, OSError, AttributeError):  # not every system has each
-            resource.setrlimit(getattr(resource, name), (most, most))
+            resource.setrlimit(getattr(resource, limit), (most, most))
     opened = _opened(planner)
     with open(lines_file, "a", encoding="utf-8") as lines:
 
@@ -226,12 +238,15 @@ def main(job_file: str, lines_file: str) -> None:
             for each in work(begin):
                 _refuse_left(name)
                 _refuse_opened(name, planner, opened)
-                say("answer", each)
-            say("done", True)
+                if isinstance(each, PlannerFailure):
+                    say("fails", [str(each), account(each)])
+                else:
+                    say("answer", each)
         # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
         except BaseException as error:
             text = str(error) if isinstance(error, PlannerFailure) else f"{name}: {told(error)}"
             say("fails", [text, account(error)])
+        say("done", True)
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):
                 stream.flush()

@@ -22,6 +22,8 @@ LAST = "CRITICAL "
 """What comes, in the log of a job that has failed, before the line that says why."""
 MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
 """The most frames and lines of a traceback in a log, and the most characters of a line."""
+MOST_TOLD = 20
+"""The most runs of a job that are named as faulty, each in a line."""
 
 
 @contextmanager
@@ -48,9 +50,13 @@ def job(snakemake: Any) -> Iterator[Any]:
     except Exception as error:
         logging.error("failed\n%s", account(error))
         said = str(error) if isinstance(error, PlannerFailure) else told(full_disk(error) or error)
-        line = f"{said} (full account: {log})"
-        logging.critical(line)
-        say(line)
+        lines = said.splitlines()
+        if len(lines) > MOST_TOLD:
+            lines[MOST_TOLD:] = [f"and {len(lines) - MOST_TOLD} more runs"]
+        lines[-1] += f" (full account: {log})"
+        for line in lines:
+            logging.critical(line)
+            say(line)
         sys.exit(1)
 
 

@@ -3,12 +3,15 @@ scales.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
+`make outcome` writes it; the site and the report read it.
 """
 
+import math
 import re
 import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -16,7 +19,10 @@ from bezierplan.analysis import naming, words
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.analysis.outcome import headline, summary, verdict
+from bezierplan.analysis.results import of_folder
+from bezierplan.commands import studies_of
 from bezierplan.running.inputs import PAPER
+from bezierplan.study.page import settings_of
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -28,18 +34,57 @@ TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
+PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
+SCORED = ["experiment", "problem", "method", "runs", "feasible", "excess", "evaluations"]
+BESIDE = (
+    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
+    "needs no search and is always free. A bend below 1 is smoother."
+)
 LAID = (
     "In each cell below the printed number stands before ours, of many runs: + agrees, x "
     "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
     "name."
 )
 
-
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
     "Python](../algorithms/{0}.py), [all claims](claims.csv), [all numbers](numbers.csv)."
 )
+
+
+def main() -> None:
+    """Write docs/outcome and the README's table. Raises FileNotFoundError for results that
+    `make outcome` has not made yet.
+    """
+    studies = studies_of()
+    settings = pd.DataFrame(
+        [(key, *row) for key, each in studies.items() for row in settings_of(each)],
+        columns=["study", "of", "setting", "value"],
+    )
+    compared = {key: each.baseline_comparison for key, each in studies.items()}
+    scored = [
+        f"{key}/{name}" for key, each in compared.items() if each for name in each.experiments
+    ]
+    tables = {
+        key: {
+            name: (study.tables[name].title, len(study.tables[name].index))
+            for name, table in study.compared().items()
+            if table.published and table.printed
+        }
+        for key, study in studies.items()
+    }
+    write(*named(studies), settings, scored, tables)
+    for picture in PICTURES:
+        study, _, name = picture.split("/")
+        shutil.copyfile(FULL / picture, KEPT / f"{study}_{name}")
+
+
+def named(studies: Mapping[str, Any]) -> tuple[dict[str, str], verdict.Files]:
+    """Return the titles of studies, and their sentences."""
+    titles = {key: study.title for key, study in studies.items()}
+    files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
+    return titles, {key: file for key, file in files.items() if file[0]}
 
 
 def write(
@@ -58,7 +103,7 @@ def write(
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
-    claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
+    claims = with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     for name in ("numbers.csv", BASELINE_COMPARISON, WORTH, WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
@@ -70,14 +115,13 @@ def write(
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
     checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
     settings.to_csv(KEPT / "settings.csv", index=False)
-    scored = benchmark.of_results(FULL, experiments)
-    scored.to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
+    scores(FULL, experiments).to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
     follow = following(KEPT, verdicts, numbers, claims, measured)
     for key, text in follow.items():
         page = paper(titles[key], text, claims[claims["study"] == key], RESULTS / key, tables[key])
         (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
-    readme = summary.with_block(readme, BLOCK, table(KEPT, titles, verdicts))
+    readme = with_block(readme, BLOCK, table(KEPT, titles, verdicts))
     README.write_text(readme, encoding="utf-8")
 
 
@@ -141,7 +185,7 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
         for key, text in following(folder, verdicts, *tables).items()
     )
     pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
-    overview = headline.markdown(headline.headline(*tables, titles), pages)
+    overview = markdown(headline.headline(*tables, titles), pages)
     most = int(tables[0]["n_ours"].max())
     return f"{overview}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
 
@@ -149,3 +193,60 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
 def sentences(text: str) -> list[str]:
     """What follows for a paper, sentence by sentence: README and the site's home have the first."""
     return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text.partition("\n\n")[0])
+
+
+def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
+    """Return claims of scale extended with one more column after the verdict,
+    `verdict_papers_size`: that of the same claim at scale full.
+    """
+    keys = ["study", "id", "variant"]
+    theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
+    both = claims.merge(theirs, on=keys, how="left", validate="one_to_one")
+    columns = list(claims)
+    columns.insert(columns.index("verdict") + 1, "verdict_papers_size")
+    return both[columns]
+
+
+def with_block(text: str, name: str, block: str) -> str:
+    """Return the text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises
+    ValueError if there is no such part.
+    """
+    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
+    if not 0 <= text.find(begin) < text.find(end):
+        raise ValueError(f"no part between {begin} and {end}")
+    return f"{text[: text.find(begin)]}{begin}\n{block}\n{text[text.find(end) :]}"
+
+
+def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
+    """Return the headline as markdown: the sentences, the tables, and what their words mean.
+
+    addresses: of the studies' pages, by name.
+    """
+    parts = [f"**{' '.join(head.sentences)}**"]
+    for table, headings, legend in (
+        (head.papers, headline.PAPERS, headline.LEGEND),
+        (head.methods, headline.METHODS, BESIDE),
+    ):
+        if not table.empty:
+            shown = table.rename(
+                columns=headings,
+                index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
+            )
+            parts += [table_text(shown), legend]
+    return "\n\n".join(parts)
+
+
+def scores(folder: Path, experiments: Iterable[str]) -> pd.DataFrame:
+    """Return the summaries of experiments, each `study/name`, in results of a scale."""
+    tables = []
+    for experiment in experiments:
+        study, _, name = experiment.partition("/")
+        runs = of_folder(folder / study, name).runs.rename(columns={"bound": "shortest"})
+        # Other methods are scored without these.
+        runs = runs.assign(curvature=math.nan, cpu_s=math.nan)
+        tables.append(benchmark.summaries(runs).assign(experiment=experiment))
+    return pd.concat(tables)[SCORED]
+
+
+if __name__ == "__main__":
+    main()
