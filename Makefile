@@ -17,6 +17,8 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
+# A copy of the tree runs its own source, whatever environment it has.
+export PYTHONPATH = src
 
 .PHONY: help reproduce smoke digests beyond extended test lint docs wheel image benchmark mutants compare archive cluster outcome lock newest clean distclean anew
 
