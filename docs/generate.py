@@ -24,7 +24,7 @@ from docutils.utils.math import latex2mathml
 
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
-from bezierplan.planners import known_planners, planner_module, planner_settings
+from bezierplan.planners import list_planners, load_planner, read_settings
 from bezierplan.study.alternatives import meaning
 
 HERE = Path(__file__).parent
@@ -70,7 +70,7 @@ def write(folder: Path) -> None:
     page, results = content.content()
     environment = build.environment(page, results, HERE / "templates", HERE)
     environment.filters |= {"cell": escaped, "words": in_words, "name": content.name_of}
-    planners = {name: planner(name, page.studies) for name in known_planners()}
+    planners = {name: planner(name, page.studies) for name in list_planners()}
     environment.globals |= {
         "page": page,
         "papers": page.studies,
@@ -157,8 +157,8 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
     open, achieved, resting: entries of assumptions, rows of the comparison with the baseline, and
     claims, each with its study.
     """
-    module, text = planner_module(name), content.about(name)
-    accepted = planner_settings(module)
+    module, text = load_planner(name), content.about(name)
+    accepted = read_settings(module)
     users = {key: methods for key, study in studies.items() if (methods := users_in(study, name))}
 
     def of_users(rows: Callable[[SimpleNamespace, set[str]], Iterable[Any]]) -> list[Any]:

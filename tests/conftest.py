@@ -87,14 +87,14 @@ def planners_are_read_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     from bezierplan.running.guard import interface, process
 
-    answers = process.answers
+    answers = process.run_function
 
     def of_file_here(work: partial, *others: object) -> list:
-        if work.func is interface.described:
+        if work.func is interface.describe_in_process:
             return [*work(str)]
         return answers(work, *others)
 
-    monkeypatch.setattr(process, "answers", of_file_here)
+    monkeypatch.setattr(process, "run_function", of_file_here)
 
 
 def pytest_xdist_auto_num_workers() -> int:

@@ -84,8 +84,8 @@ def scenarios(study: Study) -> Parts:
         for method in study.methods_of(name):
             chunk = jobs.job(study, name, method, "smoke", 0)
             first, *others = ((each, chunk.repeats[0]) for each in chunk.conditions())
-            (run,) = execution.rows_again(chunk, [first], made, moving)
-            planned = [execution.identity(chunk, *each) for each in others]
+            (run,) = execution.make_rows_again(chunk, [first], made, moving)
+            planned = [execution.identify_run(chunk, *each) for each in others]
             found["first run", f"{name}/{method}"] = _plain(pd.DataFrame([run, *planned]))
     return found
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -72,12 +72,13 @@ def assert_path_fits(problem: Problem, found: Plan) -> None:
     assert found.claimed_feasible
     assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
     assert (
-        cell_length.occupied_cells(
-            *cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied
+        cell_length.count_occupied_cells(
+            *cell_length.list_touched_cells(*cell_length.sample_in_cells(found.path, grid)),
+            grid.occupied,
         )
         == 0
     )
-    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert check(curves.bezier_pieces(found.path), build_region(grid)).feasible
     octile_bound = shortest_paths.lattice_path(
         grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free"
     ).length

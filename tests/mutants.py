@@ -93,7 +93,7 @@ def nearest(fault: Fault) -> list[str]:
     """
     found = []
     for test in ROOT.glob("tests/test_*.py"):
-        text, reached = test.read_text(), digest.sources(str(test))
+        text, reached = test.read_text(), digest.find_sources(str(test))
         # Kinds are imported by their names in a study.
         if (ROOT / fault.file in reached or "/kinds/" in fault.file) and "starts" not in text:
             found.append((Path(fault.file).stem not in text, len(reached), f"tests/{test.name}"))

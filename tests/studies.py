@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import drawings, results
-from bezierplan.planners import Plan, planner_module
+from bezierplan.planners import Plan, load_planner
 from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
@@ -74,6 +74,4 @@ def planned(key: str, method: str, problem: Problem, seed: int = 0, **changes: A
     """The plan of a method of a study, with its settings but for some changes."""
     own = study(key)
     settings = own.resolved(method) | changes
-    return planner_module(own.planner(method)).plan(
-        problem, np.random.default_rng(seed), **settings
-    )
+    return load_planner(own.planner(method)).plan(problem, np.random.default_rng(seed), **settings)

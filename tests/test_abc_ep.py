@@ -12,7 +12,7 @@ from studies import planned, study
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners import abc_ep
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -31,7 +31,7 @@ def field(*circles, side=100):
 
 def settings(**changes):
     """As kernels read them; changes are in cells."""
-    return filled(abc_ep.Settings, SETTINGS | changes)
+    return fill_settings(abc_ep.Settings, SETTINGS | changes)
 
 
 @pytest.mark.parametrize("number", range(12))
@@ -110,10 +110,13 @@ def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
         0, 10 - math.dist((10.5, 10.5), (13.5, 14.5))
     )
     expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
-    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(
+    assert abc_ep._compute_cost(occupied, target, path, 3, point, colony) == pytest.approx(
         expected, rel=1e-12
     )
-    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
+    assert (
+        abc_ep._compute_cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony)
+        == abc_ep._UNSEEN
+    )
 
 
 def colony_of(places, costs, monkeypatch, cycles):
@@ -135,14 +138,14 @@ def colony_of(places, costs, monkeypatch, cycles):
         weights.append(given.copy())
         return rng.integers(0, len(given), count)
 
-    for name, changed in (("_draw", placed), ("_cost", priced), ("roulette", chosen)):
+    for name, changed in (("_draw", placed), ("_compute_cost", priced), ("draw_parents", chosen)):
         monkeypatch.setattr(abc_ep, name, changed)
     monkeypatch.setattr(abc_ep, "_SOURCES", len(places))
     monkeypatch.setattr(abc_ep, "_TRIAL_LIMIT", 10**9)
     colony = settings(cycles=cycles, reach=40.0)
     path = np.array([[50.5, 50.5], [0.0, 0.0]])
     occupied = np.zeros((101, 101), dtype=bool)
-    abc_ep._next_point.py_func(
+    abc_ep._append_next_point.py_func(
         np.random.default_rng(5), occupied, np.array([90.0, 90.0]), path, 1, colony
     )
     return np.array(tried[len(costs) :]), weights

@@ -38,7 +38,7 @@ from bezierplan.running.jobs import log
 log.end_with_parent = lambda: None
 folder = sys.argv[1]
 output = OutputFiles(fromdict={"one": folder + "/one.csv"})
-with log.job(SimpleNamespace(log=[folder + "/log"], input=[], output=output)) as parts:
+with log.run_job(SimpleNamespace(log=[folder + "/log"], input=[], output=output)) as parts:
     Path(parts.one).write_bytes(b"x" * 10_000_000)
 """
 
@@ -48,7 +48,7 @@ def test_write_without_space_ends_a_job_with_one_line_and_leaves_no_part(job, nu
     folder = Path(job.output.one).parent
 
     def write_a_part():
-        with log.job(job) as parts:
+        with log.run_job(job) as parts:
             Path(parts.one).write_text("a part")
             try:
                 raise OSError(number, os.strerror(number))

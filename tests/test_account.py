@@ -119,9 +119,9 @@ from bezierplan.machine import digest
 from bezierplan.running import recheck
 from bezierplan.running.guard import process
 from bezierplan.study import checks
-process.answers = lambda work, *given: [*work(str)]
+process.run_function = lambda work, *given: [*work(str)]
 checks.Checks.check = lambda self: []
-recheck.verify = recheck.made_again = lambda *given: recheck.RunsVerdict()
+recheck.verify = recheck.run_again = lambda *given: recheck.RunsVerdict()
 proof.differing = lambda *given: (0, [])
 
 def ended(main, *given):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from studies import built, study
 
-from bezierplan.planners import planner_module
+from bezierplan.planners import load_planner
 
 ALGORITHMS = Path(__file__).parents[1] / "docs" / "algorithms"
 SEEDS = range(20)
@@ -48,9 +48,9 @@ CASES = {
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case[0])
 def test_a_page_of_python_finds_what_the_kernel_finds(case):
     key, experiment = case
-    page = planner_module(str(ALGORITHMS / f"{key}.py"))
+    page = load_planner(str(ALGORITHMS / f"{key}.py"))
     home, _, method = page.METHOD.partition("/")
-    kernel, settings = planner_module(study(home).planner(method)), study(home).resolved(method)
+    kernel, settings = load_planner(study(home).planner(method)), study(home).resolved(method)
     assert page.plan.__kwdefaults__.items() <= settings.items()
     names, changes = CASES[case]
     problems = [built(study(home), experiment, name) for name in names]

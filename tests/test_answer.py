@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from chunks import BENDS, DISC
 
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan
 from bezierplan.running import answer, execution, planning, problems
 from bezierplan.running.chunk import Condition
@@ -140,7 +140,7 @@ LIES = {
 
 
 def row(plan):
-    return execution.row(CHUNK, CONDITION, 0, plan, True, DISC, region(DISC.workspace))
+    return execution.build_row(CHUNK, CONDITION, 0, plan, True, DISC, build_region(DISC.workspace))
 
 
 @pytest.mark.parametrize("lie", LIES)
@@ -156,7 +156,7 @@ def test_lie_is_refused_by_run_and_field(lie):
 
 
 def test_names_that_are_taken_are_those_that_are_joined():
-    bounds = problems.bounds_of({"disc": DISC}, {}).column_names
+    bounds = problems.compute_bounds({"disc": DISC}, {}).column_names
     assert set(bounds) <= TAKEN
     assert {"cpu_s", "wall_s", "least_arrival", "replans_late"} <= TAKEN
 
@@ -178,7 +178,7 @@ def test_honest_answers_pass():
 def test_the_row_holds_what_was_judged():
     """A planner that changes its arrays later changes nothing."""
     points, history = LINE.copy(), np.array([8.0])
-    kept = answer.accepted(
+    kept = answer.accept_answer(
         PLAN._replace(path=Path("polyline", points), history=history), DISC, TAKEN
     )
     points[:], history[:] = 0.0, -1.0
@@ -188,14 +188,16 @@ def test_the_row_holds_what_was_judged():
 
 @pytest.mark.parametrize("plan", [PLAN, PLAN._replace(path=None, claimed_feasible=False)])
 def test_text_holds_all_bits_of_a_plan(plan):
-    given = answer.plain(plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0])))
-    again = plain.unpacked(json.loads(json.dumps(plain.packed(given))))
+    given = answer.convert_answer(
+        plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0]))
+    )
+    again = plain.unpack(json.loads(json.dumps(plain.pack(given))))
     assert repr(again) == repr(given)
 
 
 def test_a_region_shares_no_memory_with_its_workspace():
     circles = DISC.workspace
-    made = region(circles)
+    made = build_region(circles)
     assert not np.shares_memory(made.centres, circles.centres)
     assert not np.shares_memory(made.radii, circles.radii)
 
@@ -203,4 +205,4 @@ def test_a_region_shares_no_memory_with_its_workspace():
 @pytest.mark.parametrize("claims", [(True, True), (True, False), (False, True)])
 def test_a_path_through_way_points_is_claimed_free_if_each_leg_is(claims):
     legs = [PLAN._replace(claimed_feasible=claim) for claim in claims]
-    assert planning.joined(legs).claimed_feasible == all(claims)
+    assert planning.join_answers(legs).claimed_feasible == all(claims)

@@ -108,7 +108,7 @@ def laid(monkeypatch, **changes):
 
     with monkeypatch.context() as patched:
         patched.setattr(ant_colony, "_lay", record)
-        for name in ("_colony", "_walk"):
+        for name in ("_run_colony", "_walk"):
             patched.setattr(ant_colony, name, getattr(ant_colony, name).py_func)
         search(**changes)
     return changed

@@ -6,7 +6,7 @@ import numpy as np
 from test_lattice_planners import colony_rules, environment, plan
 
 from bezierplan.planners import ant_colony
-from bezierplan.planners.ant_colony_genetic import _first_population
+from bezierplan.planners.ant_colony_genetic import _choose_first_population
 from bezierplan.workspaces.lattice import lattice
 
 
@@ -17,7 +17,7 @@ def colony_of(sizes, best):
 
 
 def test_the_best_path_and_the_last_ants_in_turn_are_the_first_population():
-    paths, sizes = _first_population(colony_of([3, 0, 4], [40, 41]), 6)
+    paths, sizes = _choose_first_population(colony_of([3, 0, 4], [40, 41]), 6)
     assert sizes.tolist() == [2, 3, 4, 3, 4, 3]
     assert [path[:size].tolist() for path, size in zip(paths, sizes, strict=True)] == [
         [40, 41],
@@ -26,7 +26,7 @@ def test_the_best_path_and_the_last_ants_in_turn_are_the_first_population():
 
 
 def test_where_all_last_ants_died_all_are_the_best_path():
-    paths, sizes = _first_population(colony_of([0, 0], [40, 41, 42]), 4)
+    paths, sizes = _choose_first_population(colony_of([0, 0], [40, 41, 42]), 4)
     assert sizes.tolist() == [3] * 4
     assert paths[:, :3].tolist() == [[40, 41, 42]] * 4
 

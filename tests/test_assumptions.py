@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 from studies import built, studies
 
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.running import execution
 from bezierplan.study.alternatives import under
 from bezierplan.study.jobs import job
@@ -28,12 +28,12 @@ def found(study, experiment, method, place=-1):
     described = job(study, experiment, method, "smoke", 0)
     name = list(described.problems)[place]
     problem = built(study, experiment, name)
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     rows = []
     condition = next(each for each in described.conditions() if each.problem == name)
     for repeat in range(REPEATS):
         plan = execution.run(described, condition, repeat, problem)
-        row = execution.row(described, condition, repeat, plan, True, problem, blocked)
+        row = execution.build_row(described, condition, repeat, plan, True, problem, blocked)
         rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 

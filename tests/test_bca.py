@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from studies import planned
 
 from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import bca
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
@@ -104,12 +104,12 @@ def test_a_claimed_path_has_no_sample_inside_an_obstacle_however_fine(seed):
     found = plan(grid, seed=seed, initial="feasible", generations=6)
     if found.claimed_feasible:
         # Its chords are free; the curve leaves them by less than this.
-        check = checker.check(curves.bezier_pieces(found.path), region(grid))
+        check = checker.check(curves.bezier_pieces(found.path), build_region(grid))
         assert check.feasible or check.depth < 0.01
 
 
 def chord(x, y, x_end, y_end, grid):
-    return bca.collisions(np.array([x, x_end]), np.array([y, y_end]), grid.occupied)
+    return bca.count_collisions(np.array([x, x_end]), np.array([y, y_end]), grid.occupied)
 
 
 @pytest.mark.parametrize(

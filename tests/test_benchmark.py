@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.planners import known_planners
+from bezierplan.planners import list_planners
 
 SCRIPTS = Path(__file__).parent / "benchmark"
 NAMES = {file.stem for file in SCRIPTS.glob("*.py")}
@@ -87,7 +87,7 @@ def test_a_cost_is_a_multiple_of_the_fixed_work(script):
 
 
 def test_each_planner_is_run_where_a_study_uses_it(script):
-    assert sorted(name for name, *_ in script("frame").first_runs()) == known_planners()
+    assert sorted(name for name, *_ in script("frame").first_runs()) == list_planners()
 
 
 def test_what_grows(script):

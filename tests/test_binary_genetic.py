@@ -98,7 +98,7 @@ def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
     compiled = plan(
         random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4
     )
-    monkeypatch.setattr(binary_genetic, "same", lambda *_: False)
+    monkeypatch.setattr(binary_genetic, "is_same", lambda *_: False)
     monkeypatch.setattr(binary_genetic, "_search", binary_genetic._search.py_func)
     plain = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
     assert np.array_equal(compiled.history, plain.history)
@@ -178,7 +178,9 @@ def test_coinciding_points_leave_the_final_path_and_nothing_else(curve):
         )
         assert rest.objective == kept.objective
         assert np.array_equal(rest.history, kept.history)
-        assert np.array_equal(rest.path.points, binary_genetic.distinct(kept.path.points))
+        assert np.array_equal(
+            rest.path.points, binary_genetic.drop_repeated_points(kept.path.points)
+        )
         bad = reference(rest.path, grid, SAMPLES[curve])[1]
         assert rest.extra["bad_samples"] == bad
         assert rest.claimed_feasible == (bad == 0)

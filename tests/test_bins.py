@@ -9,7 +9,7 @@ import pytest
 from bezierplan.geometry import checker
 from bezierplan.geometry.bins import Bins
 from bezierplan.geometry.checker.certificates import is_free
-from bezierplan.geometry.region import PolygonRegion, Region, region
+from bezierplan.geometry.region import PolygonRegion, Region, build_region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -30,7 +30,7 @@ def field(seed: int, obstacles: int) -> PolygonRegion:
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
         box = rng.uniform(0.1, 1.5, 2) * [[-1, -1], [1, -1], [1, 1], [-1, 1]]
         rings.append((box @ turn.T + rng.integers(0, 11, 2),))
-    return region(Polygons((0.0, SIDE, 0.0, SIDE), tuple(rings), "m"))
+    return build_region(Polygons((0.0, SIDE, 0.0, SIDE), tuple(rings), "m"))
 
 
 def of_all_edges(blocked: Region) -> Region:
@@ -75,13 +75,15 @@ def test_a_hull_is_free_as_by_all_edges(seed):
 
 def cells(seed: int) -> Region:
     rng = np.random.default_rng(seed)
-    return region(Grid(rng.random((30, 40)) < [0.01, 0.1, 0.3][seed % 3], SIDE / 40, "m", (0, 0)))
+    return build_region(
+        Grid(rng.random((30, 40)) < [0.01, 0.1, 0.3][seed % 3], SIDE / 40, "m", (0, 0))
+    )
 
 
 def discs(seed: int) -> Region:
     rng = np.random.default_rng(seed)
     home = Circles((0.0, SIDE, 0.0, SIDE), SIDE * rng.random((5, 2)), rng.uniform(0.1, 1, 5), "m")
-    return region(home)
+    return build_region(home)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -103,7 +105,7 @@ def test_a_map_of_two_million_random_cells_is_checked_in_milliseconds():
     """With all its edges this took 20 s."""
     occupied = np.random.default_rng(0).random((1500, 1500)) < 0.2
     occupied[:3] = occupied[:, :3] = False
-    blocked = region(Grid(occupied, 0.05, "m", (0, 0)))
+    blocked = build_region(Grid(occupied, 0.05, "m", (0, 0)))
     around = np.array([[[0.05, 74.95], [0.05, 0.05]], [[0.05, 0.05], [74.95, 0.05]]])
     across = np.array([[[0.05, 0.05], [74.0, 74.0]]])
     verdicts = [checker.check(pieces, blocked) for pieces in (around, across)]  # compiles

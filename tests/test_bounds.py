@@ -12,7 +12,7 @@ import shapely
 from fields import BENCHMARK_MAPS, CELLS, benchmark
 
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.geometry.shortest_paths import (
     Bound,
     centre_path,
@@ -62,7 +62,7 @@ def assert_is_path(bound, problem):
     drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
     excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
     assert -1e-9 <= drawn - bound.length <= excess + 1e-9
-    assert check(pieces(bound), region(problem.workspace)).feasible
+    assert check(pieces(bound), build_region(problem.workspace)).feasible
 
 
 @pytest.mark.parametrize("name", sorted(file.stem for file in BENCHMARK_MAPS.glob("*.geojson")))

@@ -47,33 +47,33 @@ def test_both_diagonals_of_an_empty_field_measure_the_same(side):
 
 def test_a_coordinate_that_leaves_a_grid_line_is_in_the_next_cell():
     # On the line at 1.5, and at the next sample on the line at 2.5: the cell between is entered.
-    columns, _ = cell_length.touched_cells(
+    columns, _ = cell_length.list_touched_cells(
         np.array([1.0, 1.5, 2.2, 2.5, 3.0]) + 0.5, np.full(5, 0.5)
     )
     assert list(columns) == [1, 2, 3]
-    columns, _ = cell_length.touched_cells(
+    columns, _ = cell_length.list_touched_cells(
         np.array([3.0, 2.5, 1.8, 1.5, 1.0]) + 0.5, np.full(5, 0.5)
     )
     assert list(columns) == [3, 2, 1]
 
 
 def test_the_cell_entered_first_lies_between():
-    steep = cell_length.touched_cells(np.array([0.6, 1.1]), np.array([0.8, 1.5]))
+    steep = cell_length.list_touched_cells(np.array([0.6, 1.1]), np.array([0.8, 1.5]))
     assert list(zip(*steep)) == [(0, 0), (0, 1), (1, 1)]
-    flat = cell_length.touched_cells(np.array([0.8, 1.5]), np.array([0.6, 1.1]))
+    flat = cell_length.list_touched_cells(np.array([0.8, 1.5]), np.array([0.6, 1.1]))
     assert list(zip(*flat)) == [(0, 0), (1, 0), (1, 1)]
-    corner = cell_length.touched_cells(np.array([0.75, 1.25]), np.array([0.75, 1.25]))
+    corner = cell_length.list_touched_cells(np.array([0.75, 1.25]), np.array([0.75, 1.25]))
     assert list(zip(*corner)) == [(0, 0), (1, 1)]
 
 
 def test_thinning_is_greedy_from_the_start():
     # A staircase of three straight steps: the first two become a diagonal one, the third stays.
     columns, rows = np.array([0, 1, 1, 2]), np.array([0, 0, 1, 1])
-    assert cell_length.cells4(columns, rows) == 3.0
-    assert cell_length.cells8(columns, rows) == 2.5
+    assert cell_length.measure_cells4(columns, rows) == 3.0
+    assert cell_length.measure_cells8(columns, rows) == 2.5
     # Two steps in one direction, and a step there and back, are no diagonal.
-    assert cell_length.cells8(np.array([0, 1, 2]), np.zeros(3, dtype=np.int64)) == 2.0
-    assert cell_length.cells8(np.array([0, 1, 0]), np.zeros(3, dtype=np.int64)) == 2.0
+    assert cell_length.measure_cells8(np.array([0, 1, 2]), np.zeros(3, dtype=np.int64)) == 2.0
+    assert cell_length.measure_cells8(np.array([0, 1, 0]), np.zeros(3, dtype=np.int64)) == 2.0
 
 
 def test_a_path_of_cells_is_measured_on_its_own_cells():
@@ -90,7 +90,7 @@ def test_samples_of_curves_lie_on_them_and_less_than_a_cell_apart(degree):
     rng = np.random.default_rng(degree)
     for _ in range(20):
         path = Path("bezier", rng.uniform(0, 100, (degree + 1, 2)))
-        x, y = cell_length.samples(path, field(100))
+        x, y = cell_length.sample_in_cells(path, field(100))
         assert np.hypot(np.diff(x), np.diff(y)).max() < 1
         expected = curves.sample_matrix("bezier", degree + 1, len(x)) @ path.points + 0.5
         np.testing.assert_allclose(np.column_stack([x, y]), expected, rtol=0, atol=1e-10)
@@ -120,7 +120,7 @@ def test_legs_from_grid_line_to_grid_line_touch_the_cells_of_their_samples():
         ends = rng.integers(0, 40, 4) / 4 if trial % 2 else rng.uniform(0, 10, 4)
         leg = Path("polyline", ends.reshape(2, 2))
         grid = Grid(np.zeros((12, 12), dtype=bool), 1.0, "cell")
-        columns, rows = cell_length.touched_cells(*cell_length.samples(leg, grid))
+        columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(leg, grid))
         touched = set(zip(rows.tolist(), columns.tolist()))
         for row, column in np.ndindex(12, 12):
             occupied = grid.occupied.copy()

@@ -120,7 +120,9 @@ def test_length_is_that_of_the_polyline_with_its_ends(seed):
     path = random_walk(np.random.default_rng(seed), places, 20)
     polyline = Path("polyline", points(grid, start, grid.centre(int(path[-1])), path))
     last_way = places.ends - np.hypot(0.4, 0.3)
-    assert cell_paths.length(path, places) == pytest.approx(curves.length(polyline) + last_way)
+    assert cell_paths.measure_length(path, places) == pytest.approx(
+        curves.length(polyline) + last_way
+    )
 
 
 def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other():
@@ -130,7 +132,7 @@ def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other(
         marks_of(OPEN),
     )
     found = [
-        cell_paths.common_cell(np.random.default_rng(i), one, other, marks) for i in range(900)
+        cell_paths.draw_common_cell(np.random.default_rng(i), one, other, marks) for i in range(900)
     ]
     places, counts = np.unique(found, axis=0, return_counts=True)
     assert places.tolist() == [[2, 3], [3, 4], [4, 3]]
@@ -139,7 +141,7 @@ def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other(
 
 
 def test_the_ends_are_no_common_cells():
-    apart = cell_paths.common_cell(
+    apart = cell_paths.draw_common_cell(
         np.random.default_rng(0), np.array([0, 1, 2]), np.array([0, 9, 2]), marks_of(OPEN)
     )
     assert apart == (0, 0)
@@ -183,7 +185,7 @@ def test_a_reconnected_part_is_a_path_by_way_of_the_bounding_box(seed):
     places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
     first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)
     part = np.empty(60, dtype=np.int64)
-    size = cell_paths.reconnect(rng, places, first, last, part, marks_of(places))
+    size = cell_paths.join_through_random_cell(rng, places, first, last, part, marks_of(places))
     if size:
         assert (part[0], part[size - 1]) == (first, last)
         assert is_path(part[:size], places)
@@ -239,12 +241,13 @@ def test_evolution_ends_with_a_path_of_the_length_that_it_says(rules, seed):
     )
     paths, sizes = first_paths(places, seed)
     shortest = min(
-        cell_paths.length(path[:size], places) for path, size in zip(paths, sizes, strict=True)
+        cell_paths.measure_length(path[:size], places)
+        for path, size in zip(paths, sizes, strict=True)
     )
     best, history = cell_paths.evolve(np.random.default_rng(seed), places, paths, sizes, 30, rules)
     assert (best[0], best[-1]) == (places.start, places.target)
     assert is_path(best, places)
     assert history[0] == shortest
-    assert history[-1] == cell_paths.length(best, places)
+    assert history[-1] == cell_paths.measure_length(best, places)
     assert (np.diff(history) <= 0).all()
     assert history[-1] < shortest

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
-from bezierplan.planners.parts.chaotic_maps import MAPS, random_start, sequence
+from bezierplan.planners.parts.chaotic_maps import MAPS, compute_sequence, draw_start
 
 MU = 1.07
 CHAOTIC = MAPS[:8]
@@ -32,7 +32,7 @@ CHAOTIC = MAPS[:8]
     ],
 )
 def test_first_values(name, expected):
-    assert sequence(name, expected[0], len(expected), MU).values == pytest.approx(
+    assert compute_sequence(name, expected[0], len(expected), MU).values == pytest.approx(
         expected, abs=5e-11, rel=1e-9
     )
 
@@ -55,14 +55,14 @@ def test_lyapunov_exponents_are_the_known_ones(name, exponent):
 
 @given(st.sampled_from(CHAOTIC), st.floats(0, 1), st.floats(0.9, 1.08))
 def test_every_value_lies_from_0_to_1_whatever_the_start(name, start, mu):
-    values = sequence(name, start, 100, mu).values
+    values = compute_sequence(name, start, 100, mu).values
     assert ((values >= 0) & (values <= 1)).all()
 
 
 def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
     steep = 1.08
     starts = np.linspace(0, 1, 2001)
-    second = [sequence("singer", start, 2, steep) for start in starts]
+    second = [compute_sequence("singer", start, 2, steep) for start in starts]
     # With mu = 1.08 the highest value of the Singer map is 1.0054; at 1 it is 0.
     over = [
         start
@@ -70,9 +70,11 @@ def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
         if found.clips and found.values[1] == 1
     ]
     assert over
-    assert sequence("singer", over[0], 3, steep).values[1:] == pytest.approx([1, 0], abs=1e-12)
-    assert sequence("singer", over[0], 2, steep).clips == 1
-    assert sequence("singer", 0.7, 10_000, MU).clips == 0
+    assert compute_sequence("singer", over[0], 3, steep).values[1:] == pytest.approx(
+        [1, 0], abs=1e-12
+    )
+    assert compute_sequence("singer", over[0], 2, steep).clips == 1
+    assert compute_sequence("singer", 0.7, 10_000, MU).clips == 0
 
 
 @pytest.mark.parametrize(
@@ -91,28 +93,28 @@ def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
     ],
 )
 def test_where_a_sequence_collapses(name, start, collapsed_at):
-    assert sequence(name, start, 60, MU).collapsed_at == collapsed_at
+    assert compute_sequence(name, start, 60, MU).collapsed_at == collapsed_at
 
 
 @pytest.mark.parametrize("name", CHAOTIC)
 def test_random_starts_keep_their_sequences_alive(name):
     rng = np.random.default_rng(0)
-    starts = [random_start(rng, name, MU) for _ in range(200)]
-    assert all(sequence(name, start, 60, MU).collapsed_at == 0 for start in starts)
+    starts = [draw_start(rng, name, MU) for _ in range(200)]
+    assert all(compute_sequence(name, start, 60, MU).collapsed_at == 0 for start in starts)
     if name == "sinusoidal":
         assert 0.4421 < min(starts) < max(starts) < 0.9285
 
 
 def test_a_start_that_lives_is_the_first_number_drawn():
-    assert random_start(np.random.default_rng(3), "tent", MU) == np.random.default_rng(3).random()
+    assert draw_start(np.random.default_rng(3), "tent", MU) == np.random.default_rng(3).random()
 
 
 def test_no_living_start_is_an_error():
     with pytest.raises(ValueError, match="none of 1000 random starts"):
-        random_start(np.random.default_rng(0), "constant", MU)
+        draw_start(np.random.default_rng(0), "constant", MU)
 
 
 @pytest.mark.parametrize("start", [-0.1, 1.1, np.nan])
 def test_starts_outside_0_to_1_are_refused(start):
     with pytest.raises(ValueError, match="from 0 to 1"):
-        sequence("tent", start, 10, MU)
+        compute_sequence("tent", start, 10, MU)

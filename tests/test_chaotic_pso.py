@@ -14,7 +14,7 @@ from studies import planned, study
 from bezierplan.geometry import curves
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps, penalised
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
@@ -66,12 +66,12 @@ def reference(where, seed, **changes):
     size, dimensions = s["particles"], 2 * s["control_points"]
     x = -10 + 20 * np.array([[initial.random() for _ in range(dimensions)] for _ in range(size)])
     start = {
-        "random": lambda: chaotic_maps.random_start(chaos, s["chaotic_map"], s["singer_mu"]),
+        "random": lambda: chaotic_maps.draw_start(chaos, s["chaotic_map"], s["singer_mu"]),
         "uniform": chaos.random,
         "fixed": lambda: s["chaotic_start"],
     }[s["chaotic_start_rule"]]()
     zeta = iter(
-        chaotic_maps.sequence(
+        chaotic_maps.compute_sequence(
             s["chaotic_map"], start, s["iterations"] * size * dimensions, s["singer_mu"]
         ).values
     )
@@ -286,8 +286,10 @@ def among(*obstacles, start=(-4.0, 0.0), target=(4.0, 0.0)):
 
 
 def violation_of(task, x, y, **changed):
-    objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS | changed))
-    return penalised.violation(np.array([x, y], dtype=float), objective, np.empty(len(x)))
+    objective = chaotic_pso._build_objective(
+        task, fill_settings(chaotic_pso.Settings, SETTINGS | changed)
+    )
+    return penalised.measure_violation(np.array([x, y], dtype=float), objective, np.empty(len(x)))
 
 
 def test_the_violation_of_a_polygon_is_the_mean_depth_as_a_share_of_the_deepest():
@@ -303,7 +305,7 @@ def test_a_hole_is_free_and_an_indented_polygon_has_an_outside_within_its_box():
     ring = (3 * SQUARE, SQUARE)
     assert violation_of(among(ring), [0, 0.5], [0, 0.5]) == (0.0, 0)
     assert violation_of(among(ring), [2], [0]) == (
-        pytest.approx(1.0 / penalised.polygonal_obstacles(among(ring).workspace, 0).deepest[0]),
+        pytest.approx(1.0 / penalised.grow_polygons(among(ring).workspace, 0).deepest[0]),
         1,
     )
     bay = (np.array([[0.0, 0], [6, 0], [6, 6], [4, 6], [4, 2], [2, 2], [2, 6], [0, 6]]),)

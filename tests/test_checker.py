@@ -11,7 +11,7 @@ from test_exact_properties import elevated
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -39,7 +39,7 @@ def lowered(pieces, by):
 
 def circles(*discs, bounds=(-10.0, 10.0, -10.0, 10.0)):
     table = np.array(discs, dtype=float).reshape(-1, 3)
-    return region(Circles(bounds, table[:, :2], table[:, 2], "m"))
+    return build_region(Circles(bounds, table[:, :2], table[:, 2], "m"))
 
 
 def cells(size, *occupied, cell=1.0):
@@ -49,14 +49,14 @@ def cells(size, *occupied, cell=1.0):
     grid = np.zeros((size, size), dtype=bool)
     for column, row, columns, rows in occupied:
         grid[row : row + rows, column : column + columns] = True
-    return region(Grid(grid, cell, "m"))
+    return build_region(Grid(grid, cell, "m"))
 
 
 def polygons(*obstacles, bounds=(0.0, 10.0, 0.0, 10.0)):
     """Polygons from text; an obstacle is one ring, or several separated by spaces: the outer one
     and its holes.
     """
-    return region(
+    return build_region(
         Polygons(
             bounds,
             tuple(tuple(points_of(ring) for ring in text.split()) for text in obstacles),
@@ -228,7 +228,7 @@ def test_an_obstacle_between_two_samples_is_found(kind):
     x = 10 * 500.5 / SAMPLES
     thin = {
         "circles": lambda: circles((x, 5, 1e-3), bounds=(0.0, 10.0, 0.0, 10.0)),
-        "cells": lambda: region(Grid(np.arange(5000)[None] == round(x * 500) - 1, 2e-3, "m")),
+        "cells": lambda: build_region(Grid(np.arange(5000)[None] == round(x * 500) - 1, 2e-3, "m")),
         "polygons": lambda: polygons(f"({x - 1e-3},0)({x + 1e-3},0)({x + 1e-3},9)({x - 1e-3},9)"),
     }[kind]()
     y = 1e-3 if kind == "cells" else 5.0
@@ -256,7 +256,7 @@ def test_large_degrees_have_a_smaller_range():
 @pytest.mark.parametrize(
     "blocked",
     [
-        region(Grid(np.arange(900).reshape(30, 30) % 41 == 7, 1.0, "m")),
+        build_region(Grid(np.arange(900).reshape(30, 30) % 41 == 7, 1.0, "m")),
         circles((10.0, 12.0, 4.0), (20.0, 19.0, 3.0), bounds=(0.0, 30.0, 0.0, 30.0)),
     ],
     ids=["grid", "circles"],

@@ -96,7 +96,7 @@ def chunks(tmp_path):
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
-    rows.write(problems.bounds_of(described, {}), str(tmp_path / "bounds.parquet"))
+    rows.write(problems.compute_bounds(described, {}), str(tmp_path / "bounds.parquet"))
     for method in ("mine", "other"):
         folder = tmp_path / "runs" / "first" / method
         folder.mkdir(parents=True)
@@ -115,9 +115,12 @@ def chunks(tmp_path):
                 for run in reversed(runs)
             ]
             rows.write(
-                rows.table(runs, columns.Planned, columns.Outcome), str(folder / f"{chunk}.parquet")
+                rows.build_table(runs, columns.Planned, columns.Outcome),
+                str(folder / f"{chunk}.parquet"),
             )
-            parquet.write_table(rows.table(times, columns.Times), folder / f"{chunk}.times.parquet")
+            parquet.write_table(
+                rows.build_table(times, columns.Times), folder / f"{chunk}.times.parquet"
+            )
     return tmp_path
 
 
@@ -137,7 +140,7 @@ def test_a_digest_is_of_all_rows_in_any_order(chunks):
     table = rows.read(str(files[0])).to_pylist()
     for row in table:
         changed = [each | {"length": 3.0} if each is row else each for each in table]
-        rows.write(rows.table(changed, columns.Planned, columns.Outcome), str(files[0]))
+        rows.write(rows.build_table(changed, columns.Planned, columns.Outcome), str(files[0]))
         assert table_digest(files) != digest
 
 

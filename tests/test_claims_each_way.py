@@ -512,20 +512,22 @@ def outliers_of(maps):
 
 def sequences(monkeypatch, truth):
     if truth:
-        own = tharwat2018.chaotic_maps.sequence
+        own = tharwat2018.chaotic_maps.compute_sequence
 
         def low(*given):
             found = own(*given)
             return found._replace(values=0.7 * found.values)
 
-        monkeypatch.setattr(tharwat2018.chaotic_maps, "sequence", low)
+        monkeypatch.setattr(tharwat2018.chaotic_maps, "compute_sequence", low)
     return {}, None
 
 
 def starts(monkeypatch, truth):
     """All maps are like the logistic map, or like the circle map, which forgets its start."""
-    own, like = tharwat2018.chaotic_maps.sequence, "logistic" if truth else "circle"
-    monkeypatch.setattr(tharwat2018.chaotic_maps, "sequence", lambda _, *given: own(like, *given))
+    own, like = tharwat2018.chaotic_maps.compute_sequence, "logistic" if truth else "circle"
+    monkeypatch.setattr(
+        tharwat2018.chaotic_maps, "compute_sequence", lambda _, *given: own(like, *given)
+    )
     return {}, None
 
 

@@ -10,8 +10,8 @@ import pytest
 from studies import studies
 
 from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import region
-from bezierplan.planners import known_planners
+from bezierplan.geometry.region import build_region
+from bezierplan.planners import list_planners
 from bezierplan.running import execution
 from bezierplan.running.guard import contract, interface
 from bezierplan.running.jobs import watchdog
@@ -34,7 +34,7 @@ def settings_in_force() -> dict[str, dict]:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
                 condition = described.conditions()[0]
-                settings = execution.settings_in(described, condition)
+                settings = execution.resolve_settings(described, condition)
                 few = {key: count for key, count in FEW.items() if key in settings}
                 found.setdefault(study.planner(method), settings | few)
     return found
@@ -152,10 +152,10 @@ def failed(planner, settings):
 
 
 def test_every_other_planner_of_the_package_is_run_by_a_study():
-    assert sorted(SETTINGS) == known_planners()
+    assert sorted(SETTINGS) == list_planners()
 
 
-@pytest.mark.parametrize("planner", known_planners())
+@pytest.mark.parametrize("planner", list_planners())
 def test_planners_of_the_package_pass(planner):
     assert not failed(planner, SETTINGS[planner])
 
@@ -219,8 +219,8 @@ def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():
 
 @pytest.mark.parametrize("kind", interface.KINDS.values())
 def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
-    for problem in contract.problems(SimpleNamespace(workspaces=(kind,))):
-        blocked = region(problem.workspace)
+    for problem in contract.list_problems(SimpleNamespace(workspaces=(kind,))):
+        blocked = build_region(problem.workspace)
         for point in (problem.start, problem.target):
             assert checker.check(np.array([[point, point]]), blocked).feasible
         assert np.isinf(shortest_paths.shortest_path(problem).length) == problem.name.endswith(

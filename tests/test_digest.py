@@ -15,7 +15,7 @@ from bezierplan.machine import digest as digests
 
 SOURCE = Path(__file__).parents[1] / "src"
 SYNTAX = Path(__file__).parents[1] / ".cache" / "syntax"
-ASK = "from bezierplan.machine.digest import source_digest; print(source_digest(*{modules!r}))"
+ASK = "from bezierplan.machine.digest import compute_source_digest; print(compute_source_digest(*{modules!r}))"
 
 
 @pytest.fixture
@@ -173,14 +173,14 @@ def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
 def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_on(monkeypatch):
     """A straight line needs no library of geometry, a table of runs needs pandas."""
     line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.numbers.tables"
-    before = {name: digests.code_account((), name) for name in (line, table)}
+    before = {name: digests.describe_code((), name) for name in (line, table)}
     assert {"code", "numpy"} <= before[line].keys()
     assert "pandas" not in before[line]
     assert "pandas" in before[table]
-    digests.code_account.cache_clear()
-    monkeypatch.setattr(digests, "library_version", lambda name: f"99 of {name}")
-    after = digests.code_account((), table)
-    digests.code_account.cache_clear()
+    digests.describe_code.cache_clear()
+    monkeypatch.setattr(digests, "find_library_version", lambda name: f"99 of {name}")
+    after = digests.describe_code((), table)
+    digests.describe_code.cache_clear()
     assert after["code"] == before[table]["code"]
     assert after["pandas"] == "99 of pandas"
 
@@ -239,6 +239,6 @@ def test_fields_that_are_empty_do_not_count():
     with_more = copy.copy(function)
     with_more._fields = (*function._fields, "newer", "newest")
     with_more.newer, with_more.newest = [], None
-    assert digests._nested(with_more) == digests._nested(function)
+    assert digests._nest(with_more) == digests._nest(function)
     with_more.newer = [ast.Constant(None)]
-    assert digests._nested(with_more) != digests._nested(function)
+    assert digests._nest(with_more) != digests._nest(function)

@@ -23,7 +23,7 @@ from test_page_browser import browser, needs_browser  # noqa: F401
 import bezierplan as bp
 from bezierplan.figures.page import reader
 from bezierplan.places import STUDIES
-from bezierplan.planners import known_planners
+from bezierplan.planners import list_planners
 from bezierplan.study import reading
 
 ROOT = Path(__file__).parents[1]
@@ -48,7 +48,7 @@ def site(tmp_path_factory):
 
 
 def test_every_method_has_a_page_with_equations_settings_and_a_run(site):
-    for name in known_planners():
+    for name in list_planners():
         page = (site / "methods" / f"{name}.html").read_text(encoding="utf-8")
         assert "<math" in page
         assert f"bezierplan.planners.{name}.plan" in page

@@ -31,8 +31,8 @@ FUNCTIONS = [
         checker.check,
         shortest_paths.shortest_path,
         shortest_paths.least_length,
-        region.region,
-        region.blocks,
+        region.build_region,
+        region.is_blocked,
     ),
     *(
         metrics.values,

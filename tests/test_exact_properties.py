@@ -15,7 +15,7 @@ from hypothesis.extra import numpy as hnp
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein, bezier_pieces, least_points
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.geometry.shortest_paths import (
     centre_path,
     lattice_path,
@@ -175,7 +175,7 @@ def random_workspaces(kind, rng):
 def test_random_paths_against_dense_sampling(curve, kind):
     rng = np.random.default_rng([CURVES.index(curve), KINDS.index(kind)])
     for workspace in random_workspaces(kind, rng):
-        blocked, judge = region(workspace), Judge(workspace)
+        blocked, judge = build_region(workspace), Judge(workspace)
         for _ in range(40):
             pieces = bezier_pieces(random_path(rng, curve, workspace.bounds[:2]))
             assert_check_is_right(workspace, pieces, blocked, judge)
@@ -212,7 +212,7 @@ def test_tangent_paths_against_dense_sampling(curve, kind):
             workspaces = [half_blocked(kind, angle)] * 2
         for workspace, depth in zip(workspaces, (0, 4.2e-9)):
             moved = pieces if kind == "circles" else pieces - depth * normal
-            found = check(moved, region(workspace))
+            found = check(moved, build_region(workspace))
             assert found.feasible == (depth == 0)
             assert found.clearance <= 1e-9
             assert found.intervals <= 64 + 40 * len(pieces) * (pieces.shape[1] - 1) + len(pieces)
@@ -283,7 +283,7 @@ def paths(draw):
 @given(WORKSPACES, paths())
 def test_touching_paths_against_dense_sampling(workspace, pieces):
     """On a lattice paths begin, end, turn and run on the boundaries of obstacles all the time."""
-    assert_check_is_right(workspace, pieces, region(workspace), Judge(workspace))
+    assert_check_is_right(workspace, pieces, build_region(workspace), Judge(workspace))
 
 
 def mapped(workspace, flip):
@@ -332,7 +332,7 @@ def pieces_along(bound):
 def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
     bound = shortest_path(problem)
     straight = math.dist(problem.start, problem.target)
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     if check(np.array([[problem.start, problem.target]]), blocked).feasible:
         assert bound.length == pytest.approx(straight, rel=1e-12)
     else:
@@ -350,8 +350,8 @@ def test_mirroring(problem, pieces, flip):
         *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)),
     )
     assert shortest_path(mirrored).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
-    found = check(pieces, region(problem.workspace))
-    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace)), found)
+    found = check(pieces, build_region(problem.workspace))
+    assert_same_check(check(mapped_points(pieces, flip), build_region(mirrored.workspace)), found)
 
 
 @given(
@@ -367,7 +367,8 @@ def test_shifting(problem, pieces):
     )
     assert shortest_path(shifted).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
     assert_same_check(
-        check(pieces + by, region(shifted.workspace)), check(pieces, region(problem.workspace))
+        check(pieces + by, build_region(shifted.workspace)),
+        check(pieces, build_region(problem.workspace)),
     )
 
 
@@ -389,11 +390,11 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     assert shortest_path(Problem("", squares, start, target)).length == pytest.approx(
         shortest_path(Problem("", grid, start, target)).length, rel=1e-12
     )
-    found = check(pieces, region(grid))
+    found = check(pieces, build_region(grid))
     # The parameter depends on which depth above the tolerance is noticed, which is free; where a
     # path dives in slowly it matters.
     assert_same_check(
-        check(pieces, region(squares))._replace(collision_at=found.collision_at), found
+        check(pieces, build_region(squares))._replace(collision_at=found.collision_at), found
     )
 
 
@@ -466,7 +467,7 @@ def split(piece, t):
     st.floats(0.05, 0.95),
 )
 def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t):
-    blocked = region(workspace)
+    blocked = build_region(workspace)
     found = check(pieces, blocked)
     higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked)
     assert_same_check(higher, found)
@@ -495,7 +496,7 @@ def test_lattice_centre_and_any_angle_paths(grid, start, target):
         for rule in ("none", "one", "free")
     ]
     bounds += [centre_path(problem), shortest_path(problem)]
-    blocked = region(grid)
+    blocked = build_region(grid)
     for bound in bounds:
         if len(bound.points) > 1:
             found = check(pieces_along(bound), blocked)

@@ -12,17 +12,17 @@ from bezierplan.planners.fish_swarm_genetic import (
     _SWIMMING,
     Settings,
     _follow,
-    _release,
+    _place_first_paths,
 )
 from bezierplan.planners.parts import cell_paths
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import lattice
 
 COLUMNS = 12
 GRID = Grid(np.zeros((COLUMNS, COLUMNS), dtype=bool), 1.0, "unit")
 PLACES = lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
-SWARM = filled(Settings, study("ma2020").resolved("asfa_ga") | {"fish": 5})
+SWARM = fill_settings(Settings, study("ma2020").resolved("asfa_ga") | {"fish": 5})
 
 
 def cell(row, column):
@@ -81,7 +81,7 @@ def released(wanted=100, seed=0, **changes):
     problem = environment(1)
     places = lattice(problem.workspace, problem.start, problem.target, "one")
     swarm = SWARM._replace(fish=20, population=wanted, **changes)
-    return places, *_release(np.random.default_rng(seed), places, swarm)
+    return places, *_place_first_paths(np.random.default_rng(seed), places, swarm)
 
 
 def test_fish_that_arrive_give_as_many_paths_as_wanted():

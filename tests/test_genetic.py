@@ -7,9 +7,9 @@ from scipy import stats
 
 from bezierplan.planners.parts.genetic import (
     complement_bit,
+    draw_parents,
     flip_bit,
     redraw_gene,
-    roulette,
     swap_tails,
 )
 
@@ -41,7 +41,7 @@ def test_mutation_complements_exactly_one_bit(chromosome, position):
 
 def test_roulette_draws_in_proportion_to_fitness():
     fitness = np.array([1.0, 2.0, 3.0, 4.0])
-    drawn = roulette(np.random.default_rng(0), fitness, 100_000)
+    drawn = draw_parents(np.random.default_rng(0), fitness, 100_000)
     assert stats.chisquare(np.bincount(drawn), 100_000 * fitness / fitness.sum()).pvalue > 1e-3
 
 

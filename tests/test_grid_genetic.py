@@ -113,7 +113,7 @@ def test_parents_are_drawn_in_proportion_to_the_inverse_of_their_cost(monkeypatc
     draws from.
     """
     given, costs = [], []
-    best, wheel = grid_genetic._best, grid_genetic.roulette
+    best, wheel = grid_genetic._select_best, grid_genetic.draw_parents
 
     def sorted_paths(*arguments):
         found = best(*arguments)
@@ -125,8 +125,8 @@ def test_parents_are_drawn_in_proportion_to_the_inverse_of_their_cost(monkeypatc
         return wheel(rng, weights, count)
 
     for name, changed in (
-        ("_best", sorted_paths),
-        ("roulette", drawn_parents),
+        ("_select_best", sorted_paths),
+        ("draw_parents", drawn_parents),
         ("_search", grid_genetic._search.py_func),
     ):
         monkeypatch.setattr(grid_genetic, name, changed)
@@ -163,5 +163,5 @@ def test_mutation_replaces_what_lies_between_two_cells():
         assert head + tail >= 2
         assert len(row) <= 2 or len(row) - 1 == max(abs(np.ptp(row)), abs(np.ptp(column)))
         shorter += count < len(path)
-        assert grid_genetic._cost(walk, count, columns, 1.5) <= 38
+        assert grid_genetic._measure_path(walk, count, columns, 1.5) <= 38
     assert 60 < shorter < 140

@@ -15,7 +15,7 @@ import pytest
 from chunks import BENDS, DISC
 
 from bezierplan.analysis.run_tables import row_text
-from bezierplan.planners import planner_module
+from bezierplan.planners import load_planner
 from bezierplan.running import execution
 from bezierplan.running.guard import interface, process, worker
 from bezierplan.running.jobs import watchdog
@@ -80,7 +80,7 @@ def test_what_a_planner_does_is_told_in_one_short_line_that_names_the_run(
 def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeypatch, caplog):
     """With other processes that end, and much more than a log should hold."""
     given = chunk(tmp_path)
-    here = planner_module(given.planner)
+    here = load_planner(given.planner)
     guarded = chunk(
         tmp_path,
         "with multiprocessing.get_context('fork').Pool(1) as pool:\n        pool.map(abs, [1])\n"
@@ -91,7 +91,7 @@ def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeyp
     assert "aaa... (" in caplog.text
     # A process for each of two seeds of `hash`.
     assert len(caplog.text) < 3 * process.MOST_PRINTED
-    monkeypatch.setattr(worker, "planner_module", lambda planner: here)
+    monkeypatch.setattr(worker, "load_planner", lambda planner: here)
     monkeypatch.setattr(execution, "is_file", lambda planner: False)
     again, _ = execution.run_chunk({"disc": DISC}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
@@ -121,7 +121,7 @@ def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(
     file = tmp_path / "ends.py"
     file.write_text(f"{end}\n{SOUND}")
     with pytest.raises(checked.Fault) as fault:
-        interface.loaded(str(file), "place")
+        interface.load_planner_module(str(file), "place")
     assert str(fault.value) == f"place: {ENDS[end]}"
     assert file.stem not in sys.modules
 
@@ -135,10 +135,10 @@ def test_a_check_reports_what_it_raises_and_gets_a_copy(tmp_path):
             raise ValueError("tries: 5;\nexpected at most 4")
 
     with pytest.raises(checked.Fault, match=r"^place: tries: 5; expected at most 4$"):
-        interface.asked(check, "place", settings)
+        interface.ask(check, "place", settings)
     assert settings == {"tries": 4}
     with pytest.raises(checked.Fault, match=r"^place: exit of its planner fails \(sys.exit: 3\)$"):
-        interface.asked(sys.exit, "place", 3)
+        interface.ask(sys.exit, "place", 3)
 
 
 SLOW = """

@@ -15,7 +15,7 @@ def test_files_in_order_lead_back_to_their_experiments():
     given = SimpleNamespace(
         runs=["a/0", "a/1", "b/0"], problems=["problems", "others"], bounds=["bounds", "theirs"]
     )
-    assert inputs.experiments(shows, given) == {
+    assert inputs.group_by_experiment(shows, given) == {
         "first": Files({"mine": ["a/0", "a/1"], "yours": ["b/0"]}, "problems", "bounds"),
         "second": Files({}, "others", "theirs"),
     }

@@ -88,7 +88,7 @@ def test_files_appear_when_all_are_written(tmp_path):
         left = tmp_path / f".part-{name}-killed"
         left.mkdir()
         (left / name).write_text("half")
-    with log.whole_files(outputs(tmp_path, "one", "two")) as parts:
+    with log.write_whole_files(outputs(tmp_path, "one", "two")) as parts:
         for part in (parts.one, parts[1]):
             Path(part).write_text("x")
             assert not list(tmp_path.glob("*.csv"))
@@ -98,7 +98,7 @@ def test_files_appear_when_all_are_written(tmp_path):
 def test_failed_job_leaves_no_file(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
     given = SimpleNamespace(log=[str(tmp_path / "log")], input=[], output=outputs(tmp_path, "one"))
-    with pytest.raises(SystemExit, match=r"^1$"), log.job(given):
+    with pytest.raises(SystemExit, match=r"^1$"), log.run_job(given):
         raise ValueError("no footer")
     assert capsys.readouterr().err.startswith("ValueError: no footer (full account: ")
     assert not os.listdir(tmp_path)

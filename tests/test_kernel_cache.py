@@ -16,21 +16,21 @@ import starts
 from bezierplan.machine import kernel_cache
 
 MODULE = """
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 
-@compiled
+@compile_kernel
 def inner(x):
     return x + 1
 
-@compiled
+@compile_kernel
 def outer(x):
     return inner(x) * 2
 
-@compiled
+@compile_kernel
 def constant(x):
     return inner(1) + inner(x)
 
-@compiled
+@compile_kernel
 def wrong(x):
     return x + "a"
 """
@@ -142,7 +142,7 @@ def test_a_process_that_holds_a_lock_does_not_wait_for_ever(tmp_path, monkeypatc
     below.mkdir()
     with open(below / "lock", "w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
-        alone = partial(kernel_cache._alone, locks=held)
+        alone = partial(kernel_cache._lock_alone, locks=held)
         with alone(above), alone(below), alone(above):
             assert held == [above, below]
     assert held == []
@@ -154,7 +154,7 @@ def test_a_file_system_without_locks(tmp_path, monkeypatch):
 
     held = []
     monkeypatch.setattr(fcntl, "flock", refuse)
-    with kernel_cache._alone(tmp_path, held):
+    with kernel_cache._lock_alone(tmp_path, held):
         assert held == [tmp_path]
 
 

@@ -8,9 +8,9 @@ import pytest
 from studies import planned, study
 
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import ant_colony
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -33,7 +33,7 @@ each_variant = pytest.mark.parametrize("name", VARIANTS)
 
 def colony_rules(**changes):
     """The settings of an ant colony as its search takes them."""
-    return filled(ant_colony.Settings, COLONY | changes)
+    return fill_settings(ant_colony.Settings, COLONY | changes)
 
 
 def environment(number):
@@ -61,7 +61,7 @@ def test_a_path_is_a_lattice_path_of_its_own_length_and_free(name, corners, numb
     steps = np.abs(np.diff(points[1:-1], axis=0))
     assert (steps.max(axis=1) == 1).all()
     assert found.claimed_feasible
-    assert checker.check(curves.bezier_pieces(found.path), region(problem.workspace)).feasible
+    assert checker.check(curves.bezier_pieces(found.path), build_region(problem.workspace)).feasible
     assert found.objective == pytest.approx(curves.length(found.path), rel=1e-13)
     least = shortest_paths.lattice_path(
         problem.workspace.occupied, (0, 0), (19, 19), math.sqrt(2), corners

@@ -13,7 +13,7 @@ from studies import drawing, problem_of
 
 from bezierplan.analysis.audit import audit
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.papers.ma2020 import audit as own_audit
 from bezierplan.planners import bca
 from bezierplan.schema import checked
@@ -100,7 +100,7 @@ def test_reference_is_the_length_of_a_path_that_can_be(name):
         assert not grid.occupied[int(y), int(x)]
     path = Path("bezier", np.array([problem(name).start, *BEST_KNOWN[name], problem(name).target]))
     assert curves.length(path) == pytest.approx(STUDY["problems"][name]["reference"], abs=1e-4)
-    assert checker.check(curves.bezier_pieces(path), region(grid)).feasible
+    assert checker.check(curves.bezier_pieces(path), build_region(grid)).feasible
 
 
 def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
@@ -148,4 +148,4 @@ def test_figure_2_swaps_the_genes_behind_the_cut():
     codes = np.array(before)
     assert codes.min() >= 1
     assert codes.max() <= 400
-    assert len(bca.code_centres(20, 20)) == 400
+    assert len(bca.list_code_centres(20, 20)) == 400

@@ -21,7 +21,7 @@ from bezierplan.planners import Plan, node_genetic
 from bezierplan.running import execution, problems
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
-from bezierplan.running.simulation.motion_check import between
+from bezierplan.running.simulation.motion_check import cut_motion
 from bezierplan.running.simulation.robot import drive
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
@@ -96,7 +96,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
     ride = drive(moving[name], made[name], STUDY.policies["replans"], cell_path)
     moment = moving[name].moments[0]
     assert moment == pytest.approx(percent / 100 * ride.plans[0].length)
-    here = between(ride.motion, 0.0, moment).points[-1]
+    here = cut_motion(ride.motion, 0.0, moment).points[-1]
     assert made[name].workspace.cell_of(*here) == (row, column)
     rest = shortest_paths.centre_path(
         Problem(name, moving[name].maps[1], (column + 0.5, row + 0.5), made[name].target)

@@ -15,7 +15,7 @@ from bezierplan.geometry import cell_length, curves
 from bezierplan.papers.elhoseny2017.functions import q
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import gene_curves, gene_lattice
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -39,12 +39,12 @@ def field(
         Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
     )
     ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
-    return planner.field_of(grid, grid.in_cells(ends), gene_lattice, point_order)
+    return planner.build_field(grid, grid.in_cells(ends), gene_lattice, point_order)
 
 
 def rules(**changes):
     """The settings as the search reads them."""
-    return filled(planner.Settings, SETTINGS | changes)
+    return fill_settings(planner.Settings, SETTINGS | changes)
 
 
 def gene(x, y):
@@ -76,7 +76,7 @@ def test_every_cell_can_be_a_gene():
 
 def validated(ones, found, rules):
     """`validate` with a scratch of its own."""
-    return gene_curves.validate(ones, found, rules, np.inf, gene_curves.scratch_for(found))
+    return gene_curves.validate(ones, found, rules, np.inf, gene_curves.prepare_scratch(found))
 
 
 def test_constraints_in_their_order():
@@ -100,7 +100,7 @@ def test_the_longest_curve_has_room(curve):
     found = field(20, gene_lattice="cell")
     ones = np.arange(59)
     turns = (ones // 3 % 2 * (len(found.points) - 3)) + 1
-    scratch = gene_curves.scratch_for(found)
+    scratch = gene_curves.prepare_scratch(found)
     scratch.x[:] = -1.0
     crossing = found._replace(points=found.points[turns])
     cost = gene_curves.validate(
@@ -143,14 +143,18 @@ def walked(ones, found, curve):
     """x and y of all samples of a curve, and the number of occupied cells that a walk over all its
     cells finds.
     """
-    points = planner.polygon(ones, found)
+    points = planner.build_polygon(ones, found)
     pieces = points[None]
     if curve == "chain" and len(points) > 3:
         pieces = np.empty((len(points) - 3, 4, 2))
         for k, piece in enumerate(pieces):
             gene_curves._write_piece(points, k, piece)
     x, y = cell_length.walk(pieces)
-    return x, y, cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
+    return (
+        x,
+        y,
+        cell_length.count_occupied_cells(*cell_length.list_touched_cells(x, y), found.occupied),
+    )
 
 
 def maps_and_ends(among):
@@ -182,7 +186,7 @@ def test_first_sights_never_change_a_verdict(among, lattice, curve):
     rng = np.random.default_rng(3)
     free = colliding = 0
     for grid, ends in maps_and_ends(among):
-        found = planner.field_of(grid, ends, lattice, "projection")
+        found = planner.build_field(grid, ends, lattice, "projection")
         for _ in range(100):
             ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
             x, y, bad = walked(ones, found, curve)
@@ -211,11 +215,15 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
     room = np.full((20, 20), 3)
     for x, y in ((20.0, 20.0), (20.0, 10.5), (10.5, 20.0)):
         # A sample on the border is left to the walk over the cells.
-        assert gene_curves._reach.py_func(x, y, room) == gene_curves._reach(x, y, room) == -1
+        assert (
+            gene_curves._count_free_samples.py_func(x, y, room)
+            == gene_curves._count_free_samples(x, y, room)
+            == -1
+        )
     # One on another grid line has free cells on both sides.
-    assert gene_curves._reach(10.0, 10.5, room) == 2
-    assert gene_curves._reach(10.0, 10.5, np.full((20, 20), 2)) == -1
-    assert gene_curves._reach(10.3, 10.5, np.zeros((20, 20), dtype=np.int64)) == 0
+    assert gene_curves._count_free_samples(10.0, 10.5, room) == 2
+    assert gene_curves._count_free_samples(10.0, 10.5, np.full((20, 20), 2)) == -1
+    assert gene_curves._count_free_samples(10.3, 10.5, np.zeros((20, 20), dtype=np.int64)) == 0
 
 
 @pytest.mark.parametrize(
@@ -243,7 +251,7 @@ def test_plans_are_free_and_as_long_as_said(diversity_rule, curve):
         found = run(task, number, diversity=diversity_rule, curve=curve, **FEW)
         assert_path_fits(task, found)
         assert found.objective == pytest.approx(
-            length_of(*cell_length.samples(found.path, task.workspace)), rel=1e-12
+            length_of(*cell_length.sample_in_cells(found.path, task.workspace)), rel=1e-12
         )
         assert len(found.history) == 11
 
@@ -299,7 +307,7 @@ WALLED[3, :7] = WALLED[6, 2:] = True  # back and forth
 
 def maze():
     grid = Grid(WALLED, 1.0, "cell")
-    return grid, planner.field_of(grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "geodesic")
+    return grid, planner.build_field(grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "geodesic")
 
 
 def test_points_are_joined_by_their_distance_over_free_cells():
@@ -309,7 +317,7 @@ def test_points_are_joined_by_their_distance_over_free_cells():
     _, maze_field = maze()
     way = [(4, 0), (8, 2), (8, 4), (3, 4), (0, 6), (1, 8), (6, 8)]
     genes = np.flatnonzero(np.isin(maze_field.index, [9 * x + y for x, y in way]))
-    inner = gene_lattice.polygon(genes, maze_field)[1:-1]
+    inner = gene_lattice.build_polygon(genes, maze_field)[1:-1]
     assert inner.tolist() == [[x + 0.5, y + 0.5] for x, y in way]
 
 

@@ -162,10 +162,10 @@ def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
     study, (runs, *_) = driven
     described = job(study, "drives", "mine", "smoke", 0)
     run = runs.to_pylist()[1]
-    ride, _ = execution.redriven(described, run, *room)
+    ride, _ = execution.drive_again(described, run, *room)
     assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
     with pytest.raises(ValueError, match="its rerun ends in another path"):
-        execution.redriven(described, run | {"repeat": 0}, *room)
+        execution.drive_again(described, run | {"repeat": 0}, *room)
 
 
 def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
@@ -186,7 +186,7 @@ def test_files_of_problems_keep_the_world(driven, tmp_path):
     before, moving = problems.read(file)
     assert moving["across"].workspace(3).occupied[2, 3]
     assert not before["across"].workspace.occupied[2, 3]
-    bounds = problems.bounds_of(made, found).to_pylist()[0]
+    bounds = problems.compute_bounds(made, found).to_pylist()[0]
     assert bounds["bound"] == 6.0
     later = made["across"]._replace(workspace=found["across"].maps[1])
     assert bounds["least_arrival"] == shortest_paths.shortest_path(later).length > 6.0
@@ -248,7 +248,7 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, e
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = rides.judged(ride, True, *room)
+    row, _ = rides.judge_drive(ride, True, *room)
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -265,7 +265,7 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     )
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.judged(ride, True, *room)
+    row, _ = rides.judge_drive(ride, True, *room)
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
@@ -273,7 +273,7 @@ def a_row(room, points, times):
     """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
     motion = Motion(np.array(points), np.array(times))
     ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)])
-    return rides.judged(ride, True, *room)[0]
+    return rides.judge_drive(ride, True, *room)[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.

@@ -20,11 +20,11 @@ from studies import planned, study
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.geometry.shortest_paths import centre_path
 from bezierplan.planners import node_genetic
 from bezierplan.planners.parts.node_mutation import mutate
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -188,7 +188,7 @@ def test_objective_claim_and_class_of_the_result(mutation, name):
         assert (
             found.claimed_feasible
             == (obstacles == 0)
-            == check(curves.bezier_pieces(found.path), region(grid)).feasible
+            == check(curves.bezier_pieces(found.path), build_region(grid)).feasible
         )
         classes = [found.extra[key] for key in ("optimal", "near_optimal", "infeasible")]
         assert sum(classes) == 1
@@ -256,17 +256,17 @@ def test_rejection_keeps_feasible_paths_with_the_chances_that_they_have():
         for inner in itertools.product(free.tolist(), repeat=count)
         if all(met(a, b, grid) == 0 for a, b in itertools.pairwise((0, *inner, 8)))
     }
-    ways = node_genetic.free_ways(8, free, ground, 2)
+    ways = node_genetic.compute_free_ways(8, free, ground, 2)
     by_count = [sum(p for path, p in chances.items() if len(path) == n) for n in (2, 3, 4)]
     assert ways[0] == pytest.approx(by_count)
     rng, path, drawn = np.random.default_rng(0), np.zeros(4, dtype=np.int64), Counter()
     for _ in range(4000):
-        count = node_genetic.kept_path(rng, path, 8, free, ground, ways)
+        count = node_genetic.draw_feasible_path(rng, path, 8, free, ground, ways)
         drawn[tuple(path[:count].tolist())] += 1
     expected = np.array(list(chances.values())) / sum(chances.values()) * 4000
     assert drawn.keys() <= chances.keys()
     assert stats.chisquare([drawn[path] for path in chances], expected).pvalue > 1e-3
-    assert node_genetic.kept_path(rng, path, 8, free, ground, np.zeros_like(ways)) == 0
+    assert node_genetic.draw_feasible_path(rng, path, 8, free, ground, np.zeros_like(ways)) == 0
 
 
 # Operators
@@ -324,7 +324,7 @@ def test_a_node_beside_an_obstacle_encounters_it():
 
 def mutated(path, grid, mutation, seed=0, **changes):
     """A path after one mutation, and how many paths were evaluated."""
-    rules = filled(node_genetic.Settings, SETTINGS | {"mutation": mutation} | changes)
+    rules = fill_settings(node_genetic.Settings, SETTINGS | {"mutation": mutation} | changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
     tried = mutate(
@@ -501,7 +501,9 @@ def test_node_diversity_is_the_chance_that_a_node_is_foreign(seed):
         for j, other in enumerate(inner)
         if j != i
     ]
-    assert node_genetic.node_diversity(paths, lengths, 15) == pytest.approx(np.mean(foreign))
+    assert node_genetic.measure_node_diversity(paths, lengths, 15) == pytest.approx(
+        np.mean(foreign)
+    )
 
 
 def test_shares_of_feasible_paths():

@@ -230,7 +230,9 @@ def stored(folder, lengths, feasible, **more):
         "room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5)
     )
     problem_files.write({"room": room}, {"room": "room"}, str(folder / "p.parquet"))
-    row_files.write(problem_files.bounds_of({"room": room}, {}), str(folder / "p.bounds.parquet"))
+    row_files.write(
+        problem_files.compute_bounds({"room": room}, {}), str(folder / "p.bounds.parquet")
+    )
     row = {"problem": "room", "method": "m", "claimed_feasible": True, "collision_depth": 0.0}
     row |= {"clearance": 0.1, "evaluations": 5, "stop": "generations", "path_curve": "polyline"}
     row |= {"history": [5.0, 5.0, 4.0, 4.0], "path_points": [0.5, 0.5, 3.5, 0.5]}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from bezierplan import __main__
-from bezierplan.planners import planner_module
+from bezierplan.planners import load_planner
 
 PLANNER = """
 import json
@@ -35,7 +35,7 @@ def folder_with(folder, value):
 
 
 def test_planners_find_the_modules_beside_them_and_no_others(tmp_path):
-    first, second = (planner_module(folder_with(tmp_path / str(value), value)) for value in (1, 2))
+    first, second = (load_planner(folder_with(tmp_path / str(value), value)) for value in (1, 2))
     assert [each.plan(None, None, tries=1) for each in (first, second, first)] == ["11", "22", "11"]
 
 
@@ -130,14 +130,14 @@ def test_a_file_that_fails_leaves_no_module(before, tmp_path):
     file = tmp_path / "fails.py"
     file.write_text(f"{before}1 / 0\n")
     with pytest.raises(ZeroDivisionError):
-        planner_module(str(file))
+        load_planner(str(file))
     assert "study_fails" not in sys.modules
 
 
 def test_a_planner_s_file_hides_no_library(tmp_path):
     file = tmp_path / "json.py"
     file.write_text(SOUND)
-    planner_module(str(file))
+    load_planner(str(file))
     import json
 
     assert json.dumps([1]) == "[1]"

@@ -9,7 +9,7 @@ import pytest
 from fields import on_map
 from studies import planned, study
 
-from bezierplan.planners import planner_module, planner_settings
+from bezierplan.planners import load_planner, read_settings
 from bezierplan.planners.parts.settings import UNITS
 
 # A block between the corners.
@@ -48,7 +48,7 @@ def test_a_curve_to_a_sealed_target_is_said_to_collide(method):
 def test_a_map_in_other_units_is_searched_alike(method):
     """Settings that are lengths are in the same units."""
     own = study(method[0])
-    declared = planner_settings(planner_module(own.planner(method[1])))
+    declared = read_settings(load_planner(own.planner(method[1])))
     lengths = {
         key: 10 * value
         for key, value in own.resolved(method[1]).items()
@@ -88,4 +88,4 @@ def test_no_generation_leaves_the_best_of_the_first(method):
 def test_settings_that_do_not_fit_together_are_named(key, method, changes, fault):
     own = study(key)
     with pytest.raises(ValueError, match=fault):
-        planner_module(own.planner(method)).check(own.resolved(method) | changes)
+        load_planner(own.planner(method)).check(own.resolved(method) | changes)

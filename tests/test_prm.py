@@ -13,7 +13,7 @@ from studies import planned
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import prm
 
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
@@ -77,17 +77,17 @@ def test_path_is_the_shortest_way_over_the_roads(links, seed):
 def test_paths_are_free_by_the_certified_check_and_as_long_as_said(seed):
     found = plan(seed=seed)
     assert found.claimed_feasible
-    assert check(curves.bezier_pieces(found.path), region(PUBLIC.workspace)).feasible
+    assert check(curves.bezier_pieces(found.path), build_region(PUBLIC.workspace)).feasible
     assert found.objective == pytest.approx(curves.length(found.path))
     assert found.path.points[[0, -1]].tolist() == [[0, 0], [4, 6]]
     assert found.history.tolist() == [found.objective]
 
 
 def test_more_nodes_keep_those_of_fewer():
-    low, high, is_free, _ = prm._among_circles(PUBLIC.workspace, 0.0)
+    low, high, is_free, _ = prm._prepare_circles(PUBLIC.workspace, 0.0)
     for seed in range(5):
         few, some, many = (
-            prm._free_points(np.random.default_rng(seed), nodes, low, high, is_free)
+            prm._draw_free_points(np.random.default_rng(seed), nodes, low, high, is_free)
             for nodes in (10, 50, 200)
         )
         assert list(map(len, (few, some, many))) == [10, 50, 200]
@@ -113,7 +113,7 @@ def test_more_nodes_keep_those_of_fewer():
 def test_sight_is_exact(end, seen):
     # From the origin a circle of radius 1 at (2, 0) hides all within 30 degrees beyond the tangent
     # points.
-    assert prm._visible(
+    assert prm._is_visible(
         np.zeros((1, 2)), np.array([end], dtype=float), np.array([[2.0, 0.0]]), np.array([1.0])
     ).tolist() == [seen]
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from bezierplan.figures.panels import workspace as picture
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.running import problems
 from bezierplan.workspaces import files, raster
 from bezierplan.workspaces.polygons import Polygons
@@ -65,7 +65,7 @@ def test_a_segment_over_free_cells_enters_no_polygon(data):
         st.sampled_from(np.argwhere(~grid.occupied[:, :-1] & ~grid.occupied[:, 1:]).tolist())
     )
     centres = grid.in_units(np.array([[column, row], [column + 1, row]]) + 0.5)
-    assert check(centres[None], region(grid)).feasible
+    assert check(centres[None], build_region(grid)).feasible
     cell = shapely.box(*(centres[0] - 0.2 + 1e-6), *(centres[0] + 0.2 - 1e-6))
     assert not any(shapely.Polygon(*rings[:1]).intersects(cell) for rings in grid.shapes.obstacles)
 
@@ -73,7 +73,7 @@ def test_a_segment_over_free_cells_enters_no_polygon(data):
 def test_the_check_sees_the_polygons_and_not_the_cells():
     coarse = replace(drawn("gaps", 0.5, "centre"), occupied=np.zeros((41, 41), dtype=bool))
     through_the_wall = np.array([[[4.0, 10.0], [6.0, 10.0]]])
-    assert not check(through_the_wall, region(coarse)).feasible
+    assert not check(through_the_wall, build_region(coarse)).feasible
 
 
 def test_rules():

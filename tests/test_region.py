@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -34,8 +34,8 @@ coordinates = st.one_of(st.integers(0, 20).map(lambda n: n / 2), st.floats(0, 10
 @pytest.mark.parametrize("kind", WORKSPACES)
 @given(x=coordinates, y=coordinates)
 def test_point_is_blocked_where_a_path_that_stays_there_collides(kind, x, y):
-    found = region(WORKSPACES[kind])
-    assert blocks(found, (x, y)) != check(np.array([[(x, y), (x, y)]]), found).feasible
+    found = build_region(WORKSPACES[kind])
+    assert is_blocked(found, (x, y)) != check(np.array([[(x, y), (x, y)]]), found).feasible
 
 
 @pytest.mark.parametrize("kind", WORKSPACES)
@@ -43,4 +43,4 @@ def test_point_is_blocked_where_a_path_that_stays_there_collides(kind, x, y):
     "point", [(-1.0, 5.0), (11.0, 5.0), (5.0, -1.0), (5.0, 11.0), (50.0, 50.0)]
 )
 def test_outside_is_blocked(kind, point):
-    assert blocks(region(WORKSPACES[kind]), point)
+    assert is_blocked(build_region(WORKSPACES[kind]), point)

@@ -67,7 +67,7 @@ def corners(problem):
     bound = shortest_path(problem)
     if math.isinf(bound.length):
         return None
-    turns = rounded_shortest_path.turns_of(bound.points, problem.workspace)
+    turns = rounded_shortest_path.find_turns(bound.points, problem.workspace)
     return np.column_stack([turns.corner, turns.side]).round(6).tolist()
 
 

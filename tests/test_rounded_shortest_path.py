@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import build_region
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces import robot
@@ -50,7 +50,7 @@ def assert_sound(problem, plan):
     """Free by the certified check, from start to target, no tighter than it says, and not shorter
     than possible.
     """
-    assert check(curves.bezier_pieces(plan.path), region(problem.workspace)).feasible
+    assert check(curves.bezier_pieces(plan.path), build_region(problem.workspace)).feasible
     assert plan.path.points[0].tolist() == list(problem.start)
     assert plan.path.points[-1].tolist() == list(problem.target)
     assert plan.objective >= shortest_path(problem).length - 1e-6
@@ -138,7 +138,7 @@ def test_one_circle_is_gone_round_by_its_own_arc():
     assert plan.extra == {"turns": 1, "corners": 0, "least_radius": 1.0}
     wide = rounded(disc, 1.5)
     assert_sound(disc, wide)
-    assert check(curves.bezier_pieces(wide.path), region(disc.workspace)).clearance < 1e-4
+    assert check(curves.bezier_pieces(wide.path), build_region(disc.workspace)).clearance < 1e-4
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.2, 1.0, 4.0]))
@@ -191,5 +191,5 @@ def test_a_robot_as_wide_as_a_gap_in_which_it_turns(turning_radius):
     wide = robot.grow(grid, 0.5)
     problem = Problem("gap", wide, (0.5, 6.5), (6.5, 0.5))
     plan = rounded(problem, turning_radius)
-    assert check(curves.bezier_pieces(plan.path), region(wide)).feasible
+    assert check(curves.bezier_pieces(plan.path), build_region(wide)).feasible
     assert plan.objective == pytest.approx(shortest_path(problem).length, rel=1e-4)

@@ -41,7 +41,7 @@ def planner(monkeypatch):
         module = ModuleType("bend")
         exec(before + PLANNER.replace("    made.append", text), vars(module))
         for user in (worker, interface):
-            monkeypatch.setattr(user, "planner_module", lambda name: module)
+            monkeypatch.setattr(user, "load_planner", lambda name: module)
         return chunk()
 
     return put
@@ -110,7 +110,7 @@ def test_repeats_count_as_one_where_they_are_equal_and_nothing_was_drawn(planner
     assert len({*map(str, runs["path_points"].to_pylist())}) == different
     told = f"run study/bends/*/bend: planner bend: {worker.ALIKE[drew]}\n"
     assert capsys.readouterr().err == (told if different == 1 else "")
-    bounds = problems.bounds_of({"disc": DISC}, {}).to_pandas()
+    bounds = problems.compute_bounds({"disc": DISC}, {}).to_pandas()
     read = results.joined(runs.to_pandas(), {"disc": DISC}, bounds).runs
     assert (~results.repeated(read)).sum() == (6 if drew else different)
 
@@ -160,7 +160,7 @@ def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
 
 
 def test_times_are_those_of_the_clock():
-    found, cpu, wall = worker.timed(lambda: time.sleep(0.1))
+    found, cpu, wall = worker.time_call(lambda: time.sleep(0.1))
     assert found is None
     assert 0.1 <= wall < 1.0
     assert 0 <= cpu < 0.1

@@ -29,7 +29,7 @@ CHUNK = chunks.CHUNK._replace(
 
 def first_number(seeds, problem="p", x=1, repeat=0, **changes):
     chunk = CHUNK._replace(seeds=seeds, **changes)
-    return execution.task(chunk, Condition(problem, {"x": x}), repeat).generator().random()
+    return execution.build_task(chunk, Condition(problem, {"x": x}), repeat).generator().random()
 
 
 CHANGES = {

@@ -8,16 +8,16 @@ from typing import Annotated, Literal, NamedTuple
 
 import pytest
 
-from bezierplan.machine.digest import _parsed
-from bezierplan.planners import known_planners, planner_module, planner_settings
+from bezierplan.machine.digest import _parse
+from bezierplan.planners import list_planners, load_planner, read_settings
 from bezierplan.planners.parts.settings import (
     UNITS,
     About,
     Range,
-    filled,
-    in_cells,
-    setting,
-    setting_fault,
+    convert_to_cells,
+    fill_settings,
+    find_setting_fault,
+    read_setting,
     with_settings,
 )
 
@@ -81,13 +81,13 @@ def test_signature_and_documentation_follow_from_the_declaration():
 def test_equal_values_of_other_types_are_filled_in_as_they_are():
     """A kernel is compiled for each type, so 1 must not become what an equal number was before."""
     for tries in (1, 1.0, True):
-        found = filled(Settings, {"tries": tries, "reach": 3, "rule": "keep"})
+        found = fill_settings(Settings, {"tries": tries, "reach": 3, "rule": "keep"})
         assert (type(found.tries), type(found.reach), found.rule) == (type(tries), float, 0)
 
 
 def test_lengths_in_units_become_cells():
-    settings = filled(Settings, {"tries": 4, "reach": 3.0, "rule": "keep"})
-    assert in_cells(settings, 2.0) == (4, 1.5, 0)
+    settings = fill_settings(Settings, {"tries": 4, "reach": 3.0, "rule": "keep"})
+    assert convert_to_cells(settings, 2.0) == (4, 1.5, 0)
 
 
 @pytest.mark.parametrize(
@@ -102,18 +102,18 @@ def test_lengths_in_units_become_cells():
     ],
 )
 def test_a_wrong_value_is_answered_with_the_accepted_ones(annotation, value, wanted):
-    assert setting_fault(setting(annotation), value) == wanted
+    assert find_setting_fault(read_setting(annotation), value) == wanted
 
 
 @pytest.mark.parametrize("annotation", [str, list[int], Annotated[int, "tries"], IntEnum])
 def test_other_annotations_declare_no_setting(annotation):
     with pytest.raises(TypeError):
-        setting(annotation)
+        read_setting(annotation)
 
 
-@pytest.mark.parametrize("planner", known_planners())
+@pytest.mark.parametrize("planner", list_planners())
 def test_every_setting_of_the_package_says_in_one_line_what_it_means_and_whence(planner):
-    for name, declared in planner_settings(planner_module(planner)).items():
+    for name, declared in read_settings(load_planner(planner)).items():
         assert declared.about, name
         assert declared.about.text, name
         assert declared.about.source, name
@@ -127,6 +127,6 @@ def test_words_about_a_setting_run_no_job_again_but_its_unit_does():
         'About("a", "b", UNITS)',
         'About("c", unit=UNITS)',
     ]
-    words, others, unit, named = (_parsed(text.encode()).tree for text in texts)
+    words, others, unit, named = (_parse(text.encode()).tree for text in texts)
     assert words == others
     assert len({words, unit, named}) == 3

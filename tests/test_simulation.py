@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
 from bezierplan.running.simulation import bounds, cells, evasion, motion_check
-from bezierplan.running.simulation.circles import comes_near
+from bezierplan.running.simulation.circles import is_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
-from bezierplan.running.simulation.ways import way
+from bezierplan.running.simulation.ways import build_way
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
@@ -195,7 +195,11 @@ def clearances(points, at, begin, end, centres, drift, pace):
 def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
     rng = np.random.default_rng(seed)
     points = np.cumsum(rng.normal(size=(rng.integers(2, 60), 2)), axis=0)
-    along, pace, centres = way(points), rng.uniform(0.2, 3.0), rng.normal(scale=8.0, size=(4, 2))
+    along, pace, centres = (
+        build_way(points),
+        rng.uniform(0.2, 3.0),
+        rng.normal(scale=8.0, size=(4, 2)),
+    )
     drift = rng.normal(scale=rng.choice([0.0, 0.3, 3.0]), size=(4, 2))
     begin, end = np.sort(rng.uniform(0.0, along.length, 2))
     least = clearances(*along, begin, end, centres, drift, pace)
@@ -206,7 +210,7 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
             radii = np.full(4, -margin)
             radii[k] = least[k] + off - margin
             if radii[k] + margin > 0.0:
-                assert comes_near(*along, begin, end, centres, drift, radii, margin, pace) == near
+                assert is_near(*along, begin, end, centres, drift, radii, margin, pace) == near
 
 
 # A cell in the middle becomes occupied.
@@ -217,13 +221,15 @@ HIT = tuple(
 
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
     motion = Motion(np.array([[0.5, 1.5], [2.5, 1.5]]), np.array([0.0, 2.0]))
-    back = cells.way_to_start(motion, HIT[1], "centre")
+    back = cells.find_way_to_start(motion, HIT[1], "centre")
     assert back[0].tolist() == [2.5, 1.5]
     assert back[-1].tolist() == [1.5, 1.5]
-    assert cells.way_to_start(motion, HIT[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    assert cells.find_way_to_start(motion, HIT[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
     # A plan may begin anywhere outside the cell.
-    assert cells.way_to_start(motion, HIT[1], "position")[-1] == pytest.approx([2.0, 1.5], abs=0.01)
-    assert cells.way_to_start(motion, HIT[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    assert cells.find_way_to_start(motion, HIT[1], "position")[-1] == pytest.approx(
+        [2.0, 1.5], abs=0.01
+    )
+    assert cells.find_way_to_start(motion, HIT[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
 
 
 def around(problem, state):
@@ -262,13 +268,13 @@ def test_a_robot_that_a_cell_hits_drives_back_and_arrives(replan, start, waits):
 
 def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
     grid = from_lines(["....", "..#.", "...."], 1.0, "m")
-    assert cells.way_out(
-        grid, way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))
+    assert cells.find_way_out(
+        grid, build_way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))
     ) == pytest.approx(0.5)
-    assert cells.way_out(grid, way(np.array([[0.5, 1.5], [3.5, 1.5]]))) == 0.0
+    assert cells.find_way_out(grid, build_way(np.array([[0.5, 1.5], [3.5, 1.5]]))) == 0.0
     # Touching is no way out that is needed.
-    assert cells.way_out(grid, way(np.array([[2.0, 1.5], [3.5, 1.5]]))) == 0.0
-    assert cells.way_out(grid, way(np.array([[2.5, 1.5], [2.6, 1.6]]))) == 0.0
+    assert cells.find_way_out(grid, build_way(np.array([[2.0, 1.5], [3.5, 1.5]]))) == 0.0
+    assert cells.find_way_out(grid, build_way(np.array([[2.5, 1.5], [2.6, 1.6]]))) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -326,8 +332,8 @@ def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
     # To (0.5, 1.5), then past the corner at (1, 2), where all centres lie on one side of the
     # straight way, or through (1.5, 2.5).
     expected = 0.25 + math.dist((0.5, 1.5), (1.5, 2.5)) + math.dist((1.5, 2.5), (2.5, 2.5)) + 1.0
-    assert cells.least_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
-    assert math.isnan(cells.least_plan(motion, grid, (3.4, 2.5)))
+    assert cells.bound_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
+    assert math.isnan(cells.bound_plan(motion, grid, (3.4, 2.5)))
 
 
 # What no robot can beat
@@ -341,19 +347,19 @@ def gate(start, moment, *patterns):
 
 def test_circles_that_stand_bound_the_way_and_those_that_move_do_not():
     still, moving = circles((10, 10, 2, 0, 0)), circles((10, 10, 2, 0, 0.25))
-    assert bounds.least_way(moving, across(moving)).length == 20.0
-    assert bounds.least_way(still, across(still)).length > 20.0
-    assert bounds.least_arrival(circles(pace=0.5), across(moving)) == 40.0
+    assert bounds.find_least_way(moving, across(moving)).length == 20.0
+    assert bounds.find_least_way(still, across(still)).length > 20.0
+    assert bounds.bound_arrival(circles(pace=0.5), across(moving)) == 40.0
 
 
 def test_a_change_that_no_robot_can_meet_before_leaves_the_new_map_alone():
     """The wall is 3.5 away: a robot can be there by step 3.5."""
     for moment, least in [(3.4, math.inf), (3.5, math.inf), (3.6, 7.0)]:
         closes, problem = gate((0.5, 1.5), moment, "........", "....#...")
-        assert bounds.least_arrival(closes, problem) == least
-        assert bounds.least_way(closes, problem).length == 7.0
+        assert bounds.bound_arrival(closes, problem) == least
+        assert bounds.find_least_way(closes, problem).length == 7.0
     opens, problem = gate((0.5, 1.5), 2.0, "....#...", "........")
-    assert bounds.least_arrival(opens, problem) == 7.0
+    assert bounds.bound_arrival(opens, problem) == 7.0
 
 
 # Stepping aside
@@ -362,17 +368,19 @@ def test_a_change_that_no_robot_can_meet_before_leaves_the_new_map_alone():
 def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
     coming = circles((10, 6.4, 2, 0, 0.5))
     place = np.array([10.0, 9.0])
-    aside = evasion.refuge(coming, place, 0, REPLANS.but(knows="velocities"))
+    aside = evasion.find_refuge(coming, place, 0, REPLANS.but(knows="velocities"))
     assert math.dist(aside, place) == pytest.approx(1.0)
     assert aside[1] > 9.0
     passing = circles((10, 6.0, 2, 0.5, -0.2))
-    assert np.array_equal(evasion.refuge(passing, place, 0, REPLANS.but(knows="velocities")), place)
+    assert np.array_equal(
+        evasion.find_refuge(passing, place, 0, REPLANS.but(knows="velocities")), place
+    )
 
 
 def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
     chasing = circles((6, 10, 2, 0.9, 0))
     place = np.array([9.0, 10.0])
-    aside = evasion.refuge(chasing, place, 0, REPLANS.but(knows="velocities"))
+    aside = evasion.find_refuge(chasing, place, 0, REPLANS.but(knows="velocities"))
     assert abs(aside[1] - place[1]) > 0.3
 
 

@@ -20,7 +20,7 @@ WALKS = Path(__file__).parent / "data" / "walks"
 def checked(monkeypatch, tmp_path):
     """Studies that were checked; what is known of earlier checks lies in a folder of its own."""
     names, check = [], checks.Checks.check
-    monkeypatch.setattr(reading, "cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(reading, "find_cache_folder", lambda: tmp_path / "cache")
     monkeypatch.setattr(
         checks.Checks, "check", lambda self: names.append(self.study.key) or check(self)
     )

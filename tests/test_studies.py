@@ -57,7 +57,9 @@ def test_chaotic_sequences():
     assert table.groupby("map").size().to_dict() == dict.fromkeys(tharwat2018.CHAOTIC, 500)
     assert table["value"].between(0, 1).all()
     for name, own in table.groupby("map"):
-        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, SEQUENCES["singer_mu"])
+        again = chaotic_maps.compute_sequence(
+            name, own["value"].iloc[0], 500, SEQUENCES["singer_mu"]
+        )
         assert again.values.tolist() == own["value"].to_list()
         assert again.collapsed_at == 0
 

@@ -53,11 +53,11 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     study = reading.load([folder])["song2016"]
     job = jobs.job(study, "routes", "smooth", "smoke", 0)
     first, second = (
-        execution.settings_in(job, Condition(problem, {})) for problem in ("0_15", "0_255")
+        execution.resolve_settings(job, Condition(problem, {})) for problem in ("0_15", "0_255")
     )
     assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 601)
     assert second == first | {"genes": 5, "generations": 9}  # the method has samples of its own
-    assert execution.settings_in(job, Condition("0_255", {"genes": 4}))["genes"] == 4
+    assert execution.resolve_settings(job, Condition("0_255", {"genes": 4}))["genes"] == 4
     assert (
         "settings" not in jobs.job(study, "routes", "shortest_path", "smoke", 0).problems["0_255"]
     )

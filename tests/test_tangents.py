@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from bezierplan.geometry.checker import TOLERANCE, check
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -123,7 +123,7 @@ def of_all_tangents(problem):
 
 
 def assert_same(problem):
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     found = shortest_path(problem)
     assert found.length == of_all_tangents(problem)
     if math.isfinite(found.length):
@@ -154,8 +154,8 @@ def test_the_length_is_that_of_the_graph_of_all_tangents(kind):
     bends = none = 0
     for _ in range(60):
         problem = drawn(rng, kind, rng.integers(0, 25))
-        blocked = region(problem.workspace)
-        if blocks(blocked, problem.start) or blocks(blocked, problem.target):
+        blocked = build_region(problem.workspace)
+        if is_blocked(blocked, problem.start) or is_blocked(blocked, problem.target):
             continue
         found = assert_same(problem)
         bends += len(found.points) > 2

@@ -15,7 +15,7 @@ from bezierplan.figures.panels import Sources
 from bezierplan.papers.tharwat2018.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
-from bezierplan.planners.parts.settings import filled
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Chunk
 from bezierplan.schema import checked
@@ -64,7 +64,7 @@ def surface(found: results.Results) -> pd.DataFrame:
 @pytest.fixture(scope="module")
 def found() -> results.Results:
     table, _ = execution.run_chunk({"field": FIELD}, CHUNK)
-    bounds = problems.bounds_of({"field": FIELD}, {}).to_pandas()
+    bounds = problems.compute_bounds({"field": FIELD}, {}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
     return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(
@@ -87,13 +87,13 @@ def test_ways_are_those_of_the_runs(found):
     ]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
-    again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, CHUNK.settings))
+    again = chaotic_pso._build_objective(FIELD, fill_settings(chaotic_pso.Settings, CHUNK.settings))
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
         penalised.write_curve(position.T.ravel(), again, curve)
-        length = penalised.length(curve, scratch)
-        violation, _ = penalised.violation(curve, again, scratch)
-        assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
+        length = penalised.measure_length(curve, scratch)
+        violation, _ = penalised.measure_violation(curve, again, scratch)
+        assert penalised.compute_fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 
 

@@ -16,7 +16,7 @@ from bezierplan.analysis.run_tables import row_text
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import Region, region
+from bezierplan.geometry.region import Region, build_region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -63,7 +63,7 @@ def answers() -> dict[str, list[str]]:
     """What the checker and the exact shortest paths answer, with all digits."""
     found = {}
     for name, workspace in workspaces().items():
-        built: Region = region(workspace)
+        built: Region = build_region(workspace)
         found[name] = [digits(check(pieces, built)) for pieces in paths()]
         shortest = shortest_paths.shortest_path(
             Problem(name, workspace, *map(tuple, ENDS.tolist()))

@@ -125,7 +125,7 @@ def listed(folder, name):
     """Give the list of digests that of a file as it is now."""
     file = folder / "verified.json"
     content = json.loads(file.read_text())
-    content["sha256"][name] = recheck.sha256(folder / name)
+    content["sha256"][name] = recheck.compute_sha256(folder / name)
     recheck.write(content, str(file))
 
 
@@ -243,7 +243,7 @@ def test_all_but_files_that_nothing_makes_are_proven(results, capsys):
     named = json.loads((results / "verified.json").read_text())["sha256"]
     unnamed = {str(file.relative_to(results)) for file in results.rglob("*.*")} - named.keys()
     assert {name for name in unnamed if "log" not in name} == {"index.html", "verified.json"}
-    assert recheck.sha256(results / "verified.json") in (results / "index.html").read_text()
+    assert recheck.compute_sha256(results / "verified.json") in (results / "index.html").read_text()
     shutil.copytree(results / "bend/runs/bends/line", results / "bend/runs/bends/old")
     left = [
         *("summary.md", "bend/old.csv", "bend/notes/x.csv", "bend/problems/old.parquet"),
@@ -396,7 +396,7 @@ def test_runs_and_drives_are_sound_and_can_be_made_again(each):
     verdict = recheck.verify([each], 1, print)
     assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
     for every, number in ((True, 4), (False, 1)):
-        again = recheck.made_again([each], (), 1, verdict.digest, every)
+        again = recheck.run_again([each], (), 1, verdict.digest, every)
         assert again == recheck.RunsVerdict(runs=number), "all, or the first"
 
 
@@ -432,7 +432,7 @@ def on_a_copy(task, folder):
 def test_an_edit_is_told_with_file_run_column_and_both_values(tasks, tmp_path, name, column, named):
     task, copy = on_a_copy(tasks[name], tmp_path)
     edited(copy, column, EDITS[name, column, named])
-    faults = recheck.judged(task).faults
+    faults = recheck.judge(task).faults
     assert any(f": {named}: stored " in str(fault) for fault in faults)
     assert all(str(fault).startswith(f"{copy}: s/{name}/") for fault in faults)
 
@@ -448,7 +448,7 @@ FORGED = {
 def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, case):
     task, copy = on_a_copy(tasks["e"], tmp_path)
     rows.write(FORGED[case](rows.read(copy)), copy)
-    assert re.search(r" rows; expected 4$|: id: stored ", str(recheck.judged(task).faults[0]))
+    assert re.search(r" rows; expected 4$|: id: stored ", str(recheck.judge(task).faults[0]))
 
 
 @pytest.mark.parametrize(
@@ -461,8 +461,8 @@ def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, cas
 def test_what_no_path_tells_shows_when_a_run_is_made_again(tasks, tmp_path, name, column, change):
     task, copy = on_a_copy(tasks[name], tmp_path)
     edited(copy, column, change)
-    assert not recheck.judged(task).faults
-    faults = recheck.made_again([task], (), 1, "", every=True).faults
+    assert not recheck.judge(task).faults
+    faults = recheck.run_again([task], (), 1, "", every=True).faults
     assert faults
     assert all(f": {column}: stored " in str(fault) for fault in faults)
 
@@ -483,7 +483,7 @@ def test_a_foreign_table_is_refused(tasks, tmp_path, case):
     change, fault = FOREIGN[case]
     task, copy = on_a_copy(tasks["e"], tmp_path)
     rows.write(change(parquet.read_table(copy)), copy)
-    (found,) = recheck.judged(task).faults
+    (found,) = recheck.judge(task).faults
     assert str(found).startswith(f"{copy}: {fault}; delete it and start again")
 
 
@@ -497,5 +497,5 @@ def test_wrong_input_is_one_line_with_status_2(tasks, tmp_path, capsys):
         (tasks["e"]._replace(problems=str(cut)), "not a whole file of problems"),
         (tasks["e"]._replace(problems=tasks["d"].problems), "not of the problems that"),
     ):
-        (found,) = recheck.judged(task).faults
+        (found,) = recheck.judge(task).faults
         assert str(found).startswith(f"{task.problems}: {fault}")

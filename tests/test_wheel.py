@@ -27,7 +27,8 @@ EVERY_METHOD = """
 import bezierplan as bp
 from bezierplan.running.guard import contract
 picture = ("......", ".S..T.", "..#...", "......")
-rooms = [contract.drawn_problem(kind, "room", picture) for kind in ("grid", "circles", "polygons")]
+kinds = ("grid", "circles", "polygons")
+rooms = [contract.build_drawn_problem(kind, "room", picture) for kind in kinds]
 for name in [*bp.methods(all=True), "prm"]:
     for problem in rooms:
         try:

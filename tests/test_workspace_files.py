@@ -13,7 +13,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.running import problems
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files
@@ -182,7 +182,7 @@ def test_what_lies_outside_a_border_of_any_shape_is_blocked():
     courtyard = json.loads(polygon([ell, closed((1, 1), (3, 1), (3, 3), (1, 3))], "border"))[
         "features"
     ][1]
-    found = region(polygons_from_geojson(json.dumps({"features": [courtyard]}), "m"))
+    found = build_region(polygons_from_geojson(json.dumps({"features": [courtyard]}), "m"))
     for point, free in {
         (9, 3): True,
         (2, 9): True,
@@ -191,7 +191,7 @@ def test_what_lies_outside_a_border_of_any_shape_is_blocked():
         (2, 2): False,
         (3.5, 3.5): True,
     }.items():
-        assert blocks(found, point) != free
+        assert is_blocked(found, point) != free
 
 
 def test_obstacles_are_cut_at_the_border_and_that_is_told(caplog):
@@ -283,7 +283,7 @@ def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(
         assert thickness < 1e-6 or thickness < length * 1e-3
         return
     across = np.stack([middle - along[1] * 1.5 * thickness, middle + along[1] * 4 * thickness])
-    assert not check(across[None], region(found)).feasible
+    assert not check(across[None], build_region(found)).feasible
 
 
 @given(st.floats(-12, 0), st.integers(0, 3), st.booleans())
@@ -303,7 +303,7 @@ def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(expone
         if falling
         else np.array([[0.5, 1.5], [3.5, 2.5]])
     )
-    assert not check(line[None] * cell, region(found)).feasible
+    assert not check(line[None] * cell, build_region(found)).feasible
 
 
 CIRCLE_FAULTS = {

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry.cell_length import touched_cells, walk
+from bezierplan.geometry.cell_length import list_touched_cells, walk
 from bezierplan.workspaces.lattice import distances
 
 METHOD = "elhoseny2017/mga"
@@ -51,7 +51,7 @@ def plan(
             return np.inf
         xy = walk(np.vstack([ends[:1], points[x], ends[1:]])[None])
         length = np.cumsum(np.sqrt((np.diff(xy) ** 2).sum(axis=0)))[-1]
-        return np.inf if walls[touched_cells(*xy)[::-1]].any() else length  # Valid Path
+        return np.inf if walls[list_touched_cells(*xy)[::-1]].any() else length  # Valid Path
 
     def random_chromosome(most):
         x, wanted = np.zeros(len(points), dtype=bool), rng.integers(1, most + 1)

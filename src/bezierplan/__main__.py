@@ -13,7 +13,7 @@ from typing import NoReturn
 
 import bezierplan
 from bezierplan.commands import arguments
-from bezierplan.places import EXTRA, PACKAGE, extra, set_kernel_target
+from bezierplan.places import EXTRA, PACKAGE, require_extra, set_kernel_target
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, closest
 
@@ -47,7 +47,7 @@ def main(words: list[str]) -> None:
         elif name not in COMMANDS:
             _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
         else:
-            with extra():
+            with require_extra():
                 command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
                 functions = getattr(command, "PASSES_ON", ())
                 if name == "run" and {"-h", "--help"}.isdisjoint(rest):  # most are Snakemake's

@@ -19,11 +19,11 @@ import numpy as np
 from bezierplan.analysis import answers
 from bezierplan.figures import drawn_path, style
 from bezierplan.geometry import path_files, samples, shortest_paths
-from bezierplan.places import STUDIES, extra
-from bezierplan.planners import is_file, known_planners, planner_module
+from bezierplan.places import STUDIES, require_extra
+from bezierplan.planners import is_file, list_planners, load_planner
 from bezierplan.running import planning
 from bezierplan.running import problems as problem_files
-from bezierplan.running.answer import path_of
+from bezierplan.running.answer import read_path
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import check_all, check_known, closest
@@ -123,7 +123,7 @@ class Judgement:
         """
         if self.path is None:
             raise ValueError("no path was found, so there is nothing to sample or to write")
-        return samples.along(self.path, n, step)
+        return samples.sample_along(self.path, n, step)
 
     def plot(self, axes: Axes | None = None, *, map: bool = True, **look: Any) -> Axes:
         """Draw the path on its map, with the exact shortest path.
@@ -400,7 +400,7 @@ def shortest_path(problem: Problem) -> shortest_paths.Bound:
 
 def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
     """A problem with its exact shortest path."""
-    home = problem_files.placed(problem)
+    home = problem_files.place_problem(problem)
     return home, shortest_paths.shortest_path(home)
 
 
@@ -433,9 +433,9 @@ def check(problem: Problem, path: Path) -> Judgement:
     (True, 4.071, 0.5)
     """
     _check_problem(problem)
-    if not isinstance(path, Path) or not _are_numbers(path.points, len(path.points), 2):
+    if not isinstance(path, Path) or not _has_numbers(path.points, len(path.points), 2):
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
-    plain = path_of(Path(path.curve, np.array(path.points, dtype=float)))
+    plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
     return Judgement(**answers.verdict(*_bound(problem), plain) | {"path": path})
 
 
@@ -496,7 +496,7 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.247, 0.5)
     """
-    (answer,) = answers_to([problem], method, 1, seed, robot_radius, via, settings)
+    (answer,) = _answer([problem], method, 1, seed, robot_radius, via, settings)
     return answer
 
 
@@ -552,11 +552,11 @@ def compare(
         label = label or _name(method)
         if label in answers:
             raise ValueError(f"methods: {label}: twice; expected a dict with a label for each")
-        answers[label] = answers_to(asked, method, repeats, settings=settings, **options)
+        answers[label] = _answer(asked, method, repeats, settings=settings, **options)
     return Comparison(answers)
 
 
-def answers_to(
+def _answer(
     problems: Sequence[Problem],
     method: Method | None,
     repeats: int,
@@ -571,16 +571,16 @@ def answers_to(
     Raises ValueError and TypeError as `plan` does.
     """
     for name, value, least in (("seed", seed, 0), ("repeats", repeats, 1)):
-        if not _are_numbers(value) or value < least or value % 1:
+        if not _has_numbers(value) or value < least or value % 1:
             raise ValueError(f"{name}: {value!r}; expected a whole number of at least {least}")
-    if not _are_numbers(robot_radius):
+    if not _has_numbers(robot_radius):
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
-    if np.shape(via) != (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
+    if np.shape(via) != (0,) and not _has_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
-    label, (planner, module, preset) = _name(method), _planner(method)
+    label, (planner, module, preset) = _name(method), _find_planner(method)
     if planner == planning.ROUNDED:
-        preset |= planning.rounding(settings)
+        preset |= planning.choose_rounding(settings)
     if places and planner not in planning.CHAINED:
         raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {label}")
     settings = preset | {
@@ -591,16 +591,16 @@ def answers_to(
     for problem in problems:
         _check_problem(problem)
         grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
-        home = problem_files.placed(grown, getattr(module, "workspaces", None))
+        home = problem_files.place_problem(grown, getattr(module, "workspaces", None))
         check_settings(label, module, settings, home)
-        legs = planning.legs(home, places)
+        legs = planning.split_into_legs(home, places)
         which = f"method: {label}" + f": {problem.name}" * (len(problems) > 1)
-        run = planning.Run(which, home, legs, planning.shortest(legs), settings, int(seed))
+        run = planning.Run(which, home, legs, planning.find_shortest(legs), settings, int(seed))
         again = 1 if getattr(module, "deterministic", False) else int(repeats)
         runs += [run._replace(seed=run.seed + number) for number in range(again)]
     found: list[Answer] = []
     try:
-        for run, plan, cpu_s in planning.plans(module.plan, runs, planner * is_file(planner)):
+        for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
             judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
             if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
                 raise ValueError(
@@ -661,11 +661,11 @@ def _check_problem(problem: Problem) -> None:
     check_map(problem.workspace)
     for name in ("start", "target"):
         place = getattr(problem, name)
-        if not _are_numbers(place, 2):
+        if not _has_numbers(place, 2):
             raise ValueError(f"{name}: {place!r}; expected x and y, two numbers")
 
 
-def _are_numbers(values: Any, *shape: int) -> bool:
+def _has_numbers(values: Any, *shape: int) -> bool:
     array = np.asarray(values)
     return array.dtype.kind in "fiu" and array.shape == shape
 
@@ -677,25 +677,25 @@ def _name(method: Method | None) -> str:
     return getattr(method, "__name__", repr(method))
 
 
-def _planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
+def _find_planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
     """Return, of a method, its planner as a name of this package or a file (empty for others), the
     planner's module, and settings.
     """
     if method is None or method == planning.ROUNDED:
-        return planning.ROUNDED, planner_module(planning.ROUNDED), {}
+        return planning.ROUNDED, load_planner(planning.ROUNDED), {}
     if isinstance(method, str):
-        planner, preset = named(method)
-        return planner, interface.loaded(planner, f"method: {method}"), preset
+        planner, preset = find_method(method)
+        return planner, interface.load_planner_module(planner, f"method: {method}"), preset
     module = method
     if not isinstance(method, ModuleType):
         module = ModuleType("planner_of_a_program")
         module.plan = method
-    if fault := interface.interface_fault(module):
+    if fault := interface.find_interface_fault(module):
         raise TypeError(f"method: {_name(method)}: {fault}")
     return "", module, {}
 
 
-def named(method: str) -> tuple[str, dict[str, Any]]:
+def find_method(method: str) -> tuple[str, dict[str, Any]]:
     """The planner of a method, as a name of this package or a file, and its settings: those of its
     study, or of the first study that uses a planner.
 
@@ -704,30 +704,34 @@ def named(method: str) -> tuple[str, dict[str, Any]]:
     """
     if is_file(method):
         return method, {}
-    if method in known_planners():
-        uses = [use for use, planner in _planners().items() if planner == method]
-        return named(uses[0]) if uses else (method, {})
+    if method in list_planners():
+        uses = [use for use, planner in _list_planners().items() if planner == method]
+        return find_method(uses[0]) if uses else (method, {})
     key, _, name = method.rpartition("/")
-    if not (key and (_folder(key) / "experiments.yaml").is_file() and name in _study(key).methods):
-        known = [*_planners(), *known_planners()]
+    if not (
+        key
+        and (_find_folder(key) / "experiments.yaml").is_file()
+        and name in _read_study(key).methods
+    ):
+        known = [*_list_planners(), *list_planners()]
         raise ValueError(f"method: {method}: unknown{closest(method, known)}")
-    return _study(key).planner(name), _study(key).resolved(name)
+    return _read_study(key).planner(name), _read_study(key).resolved(name)
 
 
-def _folder(key: str) -> File:
+def _find_folder(key: str) -> File:
     """That of a study of this project, or any other."""
-    return STUDIES / key if key in _keys() else File(key)
+    return STUDIES / key if key in _list_keys() else File(key)
 
 
 @cache
-def _study(key: str) -> Any:
+def _read_study(key: str) -> Any:
     """The experiments of a study of this project, or of a folder."""
     from bezierplan.study import experiments
 
-    return experiments.read(_folder(key))
+    return experiments.read(_find_folder(key))
 
 
-def _keys() -> list[str]:
+def _list_keys() -> list[str]:
     return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
 
 
@@ -744,7 +748,7 @@ def check_settings(name: str, module: Any, settings: Mapping[str, Any], problem:
             + ("; read it with a cell to have a grid" if cells else "")
         )
     if hasattr(module, "serves"):
-        interface.asked(module.serves, f"method: {name}", problem)
+        interface.ask(module.serves, f"method: {name}", problem)
 
 
 def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
@@ -761,21 +765,21 @@ def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
     >>> methods()["song2016/smooth"]
     ('grid',)
     """
-    compared = {key: _study(key).baseline_comparison for key in _keys()}
+    compared = {key: _read_study(key).baseline_comparison for key in _list_keys()}
     proposed = [f"{key}/{each.proposed}" for key, each in compared.items() if each]
     return {
-        name: tuple(getattr(planner_module(planner), "workspaces", interface.KINDS.values()))
-        for name, planner in _planners().items()
+        name: tuple(getattr(load_planner(planner), "workspaces", interface.KINDS.values()))
+        for name, planner in _list_planners().items()
         if all or name in proposed
     }
 
 
-def _planners() -> dict[str, str]:
+def _list_planners() -> dict[str, str]:
     """Return the planners of all methods of the project's studies, by ``"study/method"``."""
     return {
-        f"{key}/{name}": _study(key).planner(name)
-        for key in _keys()
-        for name in _study(key).methods
+        f"{key}/{name}": _read_study(key).planner(name)
+        for key in _list_keys()
+        for name in _read_study(key).methods
     }
 
 
@@ -799,10 +803,10 @@ def problems(experiment: str) -> dict[str, Problem]:
     from bezierplan.study.experiments import problems_job
 
     key, _, name = experiment.partition("/")
-    check_known(key, _keys(), "experiment: study")
-    check_known(name, _study(key).experiments, "experiment")
-    described = problems_job(_study(key), name, "full")
-    return problem_files.build_all(described, _study(key).folder)[0]
+    check_known(key, _list_keys(), "experiment: study")
+    check_known(name, _read_study(key).experiments, "experiment")
+    described = problems_job(_read_study(key), name, "full")
+    return problem_files.build_all(described, _read_study(key).folder)[0]
 
 
 def results(folder: str | File, experiment: str) -> pd.DataFrame:
@@ -825,7 +829,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
-    with extra():
+    with require_extra():
         from bezierplan.analysis.results import of_folder
 
     return of_folder(File(folder), experiment).runs
@@ -849,10 +853,10 @@ def replay(run: str) -> Answer:
         States the unknown part of the name; a drive through a moving world has no single path and
         is replayed at the command line.
     """
-    with extra():
+    with require_extra():
         from bezierplan.study import replays
 
-    reproduced = replays.replay(run, {key: _study(key) for key in _keys()})
+    reproduced = replays.replay(run, {key: _read_study(key) for key in _list_keys()})
     if reproduced.worlds:
         raise ValueError(f"run: {run}: is a drive; expected another, or `bezierplan replay`")
     return answer_of(reproduced, run)
@@ -863,11 +867,11 @@ def answer_of(rerun: Any, run: str) -> Answer:
     return Answer(**answers.of_run(rerun, run))
 
 
-def _html(shown: Problem | Workspace) -> str:
+def _draw_html(shown: Problem | Workspace) -> str:
     """Return the picture of a map or a problem, for notebooks."""
     return drawn_path.html("", partial(drawn_path.draw, shown))
 
 
 # Maps and problems lie in a layer below that of figures.
 for shown in (Problem, *get_args(Workspace)):
-    shown.plot, shown._repr_html_ = drawn_path.draw, _html
+    shown.plot, shown._repr_html_ = drawn_path.draw, _draw_html

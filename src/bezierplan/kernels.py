@@ -1,5 +1,6 @@
-"""Decorators for kernels, the functions that numba compiles: `compiled`, `allocation_free` for
-those that create no arrays, and `inlined` for those that are always part of their caller.
+"""Decorators for kernels, the functions that numba compiles: `compile_kernel`, `allocation_free`
+for those that create no arrays, and `compile_inline` for those that are always part of their
+caller.
 """
 
 from collections.abc import Callable
@@ -18,7 +19,7 @@ _OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
 K = TypeVar("K", bound=Callable[..., Any])
 
 
-def _kernel(function: K, **options: Any) -> K:
+def _compile_kernel(function: K, **options: Any) -> K:
     """A function with the options of all kernels and some more, kept in this package's own cache;
     itself where numba compiles nothing.
     """
@@ -29,14 +30,14 @@ def _kernel(function: K, **options: Any) -> K:
     return kernel
 
 
-def compiled(kernel: K) -> K:
+def compile_kernel(kernel: K) -> K:
     """`njit` with the options of all kernels."""
-    return _kernel(kernel)
+    return _compile_kernel(kernel)
 
 
 def allocation_free(kernel: K) -> K:
-    """`compiled` for a kernel that creates no array or list, returns none, and calls only kernels
-    like it.
+    """`compile_kernel` for a kernel that creates no array or list, returns none, and calls only
+    kernels like it.
 
     Otherwise numba counts the references to every array that is passed to a kernel, with
     instructions that lock memory: in small kernels that takes most of the time, and much of the
@@ -44,9 +45,9 @@ def allocation_free(kernel: K) -> K:
     """
     # The flag, which numba documents in `numba.extending.register_jitable`, leaves out its run-time
     # library, which allocates and counts.
-    return _kernel(kernel, _nrt=False)
+    return _compile_kernel(kernel, _nrt=False)
 
 
-def inlined(kernel: K) -> K:
+def compile_inline(kernel: K) -> K:
     """A kernel that is compiled as part of each of its callers, and kept with them."""
     return njit(inline="always")(kernel)

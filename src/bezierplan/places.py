@@ -23,7 +23,7 @@ EXTRA = frozenset(("jinja2", "pyarrow", "seaborn", "snakemake"))
 
 
 @contextmanager
-def extra() -> Iterator[None]:
+def require_extra() -> Iterator[None]:
     """A block that imports what may need a library of the extra `workflow`. Raises
     ModuleNotFoundError that says how to install it.
     """
@@ -39,14 +39,14 @@ def extra() -> Iterator[None]:
         ) from None
 
 
-def cache_folder() -> Path:
+def find_cache_folder() -> Path:
     """The folder of what can be made again: `.cache` in a clone that can be written, and of an
     installed package the user's own.
     """
-    return TREE / ".cache" if CHECKOUT and os.access(TREE, os.W_OK) else user_cache_folder()
+    return TREE / ".cache" if CHECKOUT and os.access(TREE, os.W_OK) else find_user_cache_folder()
 
 
-def user_cache_folder() -> Path:
+def find_user_cache_folder() -> Path:
     """The folder that the platform names for a user's caches."""
     usual = "Library/Caches" if sys.platform == "darwin" else ".cache"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / usual) / "bezierplan"
@@ -65,7 +65,7 @@ def set_kernel_target() -> None:
     os.environ.setdefault("NUMBA_CPU_FEATURES", "")
 
 
-def relative(path: Path) -> str:
+def shorten_path(path: Path) -> str:
     """A path relative to the working folder if it lies inside, so that a moved tree still finds its
     results; otherwise unchanged.
     """

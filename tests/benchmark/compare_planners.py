@@ -39,8 +39,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.region import Region, region
-from bezierplan.planners import planner_module
+from bezierplan.geometry.region import Region, build_region
+from bezierplan.planners import load_planner
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.study import jobs
@@ -102,7 +102,7 @@ def arena(contest: Contest) -> Arena:
     built, _ = problems.build_all(described, study.folder)
     problem = built[contest.problem]
     bound = shortest_paths.shortest_path(problem).length
-    return Arena(contest, study, problem, region(problem.workspace), bound)
+    return Arena(contest, study, problem, build_region(problem.workspace), bound)
 
 
 def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Attempts:
@@ -110,14 +110,14 @@ def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Att
     contest = at.contest
     job = jobs.job(at.study, contest.experiment, method, "full", 0)
     condition = Condition(contest.problem, {})
-    settings, planner = execution.settings_in(job, condition), planner_module(job.planner)
+    settings, planner = execution.resolve_settings(job, condition), load_planner(job.planner)
     budget = settings.get(contest.budget)
     if budget:
         settings |= contest.changes
     for share in shares if budget else (1.0,):
         if budget:
             settings[contest.budget] = max(1, round(share * budget))
-        rng, before = execution.task(job, condition, seed).generator(), time.process_time()
+        rng, before = execution.build_task(job, condition, seed).generator(), time.process_time()
         plan = planner.plan(at.problem, rng, **settings)
         yield time.process_time() - before, plan.path
 

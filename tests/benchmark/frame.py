@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bezierplan.places import STUDIES
-from bezierplan.planners import Plan, planner_module
+from bezierplan.planners import Plan, load_planner
 from bezierplan.running import execution, problems
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
@@ -91,8 +91,8 @@ def first_runs() -> Iterator[tuple[str, Problem, Work]]:
         job = jobs.job(own, experiment, method, "smoke", 0)
         built, _ = problems.build_all(jobs.problems_job(own, experiment, "smoke"), own.folder)
         condition = job.conditions()[0]
-        problem, settings = built[condition.problem], execution.settings_in(job, condition)
-        plan = planner_module(planner).plan
+        problem, settings = built[condition.problem], execution.resolve_settings(job, condition)
+        plan = load_planner(planner).plan
         yield planner, problem, partial(_plan, plan, problem, settings)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from ompl import base, geometric, util
 
-from bezierplan.geometry.checker import first_collision
+from bezierplan.geometry.checker import find_first_collision
 from bezierplan.geometry.region import Region, from_origin
 from bezierplan.workspaces.problem import Problem
 
@@ -49,7 +49,7 @@ def segment_test(blocked: Region) -> SegmentTest:
     @njit
     def is_free(x, y, end_x, end_y):
         piece = np.array([[[x + shift_x, y + shift_y], [end_x + shift_x, end_y + shift_y]]])
-        return first_collision(piece, blocked)[0] == math.inf
+        return find_first_collision(piece, blocked)[0] == math.inf
 
     is_free(0.0, 0.0, 0.0, 0.0)
     return is_free

@@ -23,7 +23,7 @@ from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
-from bezierplan.running.inputs import tree
+from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
 from bezierplan.study import experiments, jobs, page, reading, stored
 
@@ -143,7 +143,7 @@ def files_in(scale, folder, study=None):
 
 
 def in_trees(names):
-    return [f"{tree(name)}/{name}" for name in names]
+    return [f"{choose_tree(name)}/{name}" for name in names]
 
 
 def files_of(scale, study, name):
@@ -272,7 +272,7 @@ FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
 def compared(scale, ending):
     """Files of one kind of all tables of a scale that have published numbers."""
     return [
-        f"results/{scale}/{key}/{tree(name)}/{name}.{ending}.csv"
+        f"results/{scale}/{key}/{choose_tree(name)}/{name}.{ending}.csv"
         for key, study in OF_SCALE[scale].items()
         for name in study.with_published()
     ]

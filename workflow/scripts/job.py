@@ -2,5 +2,5 @@
 
 from bezierplan.running.jobs import log
 
-with log.job(snakemake) as output:
+with log.run_job(snakemake) as output:
     snakemake.params.job.work(snakemake.input, output)

@@ -10,10 +10,10 @@ import numpy as np
 
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.region import region
-from bezierplan.planners import Plan, planner_module, planner_settings
+from bezierplan.geometry.region import build_region
+from bezierplan.planners import Plan, load_planner, read_settings
 from bezierplan.running import planning
-from bezierplan.running.answer import restored
+from bezierplan.running.answer import restore_path
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grown import grown_of
 from bezierplan.workspaces.problem import Path, Problem
@@ -37,8 +37,8 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     if path is None:
         return fields
     pieces = curves.bezier_pieces(path)
-    certified = checker.check(pieces, region(problem.workspace))
-    at_home = checker.check(pieces, region(grown.original)) if grown else certified
+    certified = checker.check(pieces, build_region(problem.workspace))
+    at_home = checker.check(pieces, build_region(grown.original)) if grown else certified
     jump = curves.curvature_jump(path)
     if certified.feasible:
         assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
@@ -70,11 +70,11 @@ def of_run(results: Results, name: str) -> dict[str, Any]:
     return verdict(
         problem,
         shortest_paths.shortest_path(problem),
-        restored(row["path_curve"], row["path_points"]),
+        restore_path(row["path_curve"], row["path_points"]),
     ) | {
         "turning_radius": float(row.get("least_radius", math.nan)),
         "method": f"{study}/{method}",
-        "settings": {each: row[each] for each in planner_settings(planner_module(row["planner"]))},
+        "settings": {each: row[each] for each in read_settings(load_planner(row["planner"]))},
         "history": np.array(row["history"], dtype=float),
         **{field: kind(row[field]) for field, kind in OF_PLANNERS.items()},
     }
@@ -113,7 +113,7 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
     radius = getattr(answer, "turning_radius", math.nan)
     if not math.isnan(radius):
         asked = answer.settings.get("turning_radius", math.inf)
-        kept = math.isinf(asked) or planning.keeps_radius(asked, radius)
+        kept = math.isinf(asked) or planning.is_radius_kept(asked, radius)
         less = "" if kept else f"; no room for {asked:.6g} {unit}"
         words["turning radius"] = f"{radius:.6g} {unit}{less}"
     words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"

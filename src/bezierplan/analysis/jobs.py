@@ -17,7 +17,12 @@ from typing import Any
 from bezierplan.analysis.claims.material import Material, StudyForClaims
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.machine import opened
-from bezierplan.machine.digest import code_account, content_digest, module_of, sources
+from bezierplan.machine.digest import (
+    compute_content_digest,
+    describe_code,
+    find_sources,
+    name_module,
+)
 from bezierplan.machine.modules import is_file
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
@@ -62,7 +67,7 @@ class Job(ABC):
             opened.watch()
         self.run(input_files, output_files)
         if files:
-            opened.keep(self.key, [*sources(*files), *self.sources])
+            opened.keep(self.key, [*find_sources(*files), *self.sources])
 
     @cached_property
     def account(self) -> dict[str, str]:
@@ -75,8 +80,8 @@ class Job(ABC):
         works = type(self).run, type(self).write
         return (
             {"settings": hashlib.sha256(text.encode()).hexdigest()[:16]}
-            | code_account(works, *sorted(set(self.modules())))
-            | {"sources": content_digest(*self.sources)}
+            | describe_code(works, *sorted(set(self.modules())))
+            | {"sources": compute_content_digest(*self.sources)}
         )
 
     @cached_property
@@ -89,8 +94,8 @@ class Job(ABC):
         """The account by which a job runs again: with those files that have changed since the code
         of a study first opened them. Before its first run nobody knows them.
         """
-        first = opened.kept(self.key)
-        now = opened.contents(first)
+        first = opened.read_kept(self.key)
+        now = opened.hash_contents(first)
         return self.account | {name: now[name] for name in now if now[name] != first[name]}
 
 
@@ -123,7 +128,7 @@ class Bounds(Job):
         """Compute the bounds."""
         from bezierplan.running import problems, rows
 
-        table = problems.bounds_of(*problems.read(input_files.problems))
+        table = problems.compute_bounds(*problems.read(input_files.problems))
         rows.write(table, output_files[0])
 
 
@@ -135,7 +140,7 @@ class Runs(Job):
 
     def modules(self):
         """The planner."""
-        return [module_of(self.chunk.planner)]
+        return [name_module(self.chunk.planner)]
 
     def run(self, input_files, output_files):
         """Run the method, or let the robot drive."""
@@ -164,8 +169,8 @@ class Recheck(Job):
         from bezierplan.running import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
-        verdict = recheck.judged(recheck.StoredRuns(input_files.problems[0], files))
-        recheck.write(recheck.sound(verdict), output_files[0])
+        verdict = recheck.judge(recheck.StoredRuns(input_files.problems[0], files))
+        recheck.write(recheck.check_sound(verdict), output_files[0])
 
 
 @dataclass(frozen=True)
@@ -197,7 +202,7 @@ class TableOfRuns(Job):
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        ((experiment, files),) = inputs.experiments(self.shows, input_files).items()
+        ((experiment, files),) = inputs.group_by_experiment(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
         file = input_files.sources[0] if self.sources else None
         published = comparison.read_published(file, self.spec)
@@ -236,7 +241,10 @@ class TableWithoutRuns(Job):
         from bezierplan.analysis.numbers import listing
         from bezierplan.running import inputs
 
-        published, functions = inputs.by_table(input_files.sources), study_code.functions(self.code)
+        published, functions = (
+            inputs.group_by_table(input_files.sources),
+            study_code.functions(self.code),
+        )
         self.write(listing.table(self.spec, published, functions), output_files[0])
 
 
@@ -265,7 +273,7 @@ class Claims(Job):
 
         material = Material(
             self.study,
-            results.read_all(inputs.experiments(self.shows, input_files), self.repeats),
+            results.read_all(inputs.group_by_experiment(self.shows, input_files), self.repeats),
             results.published_tables(input_files.sources),
             study_code.functions(self.code),
         )
@@ -307,8 +315,8 @@ class Audit(Job):
         table = audit.audited(
             self,
             study_code.audit(self.code),
-            inputs.experiments(self.shows, input_files),
-            inputs.by_table(input_files.sources),
+            inputs.group_by_experiment(self.shows, input_files),
+            inputs.group_by_table(input_files.sources),
         )
         self.write(table, output_files[0])
 
@@ -332,7 +340,7 @@ class BaselineTable(Job):
         rows = baseline_comparison.of_studies(
             self.baselines,
             self.repeats,
-            inputs.experiments(self.shows, input_files),
+            inputs.group_by_experiment(self.shows, input_files),
             self.with_baselines,
         )
         rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
@@ -400,23 +408,23 @@ class Verification(Job):
         from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
-        verdict = recheck.merged(
+        verdict = recheck.merge_verdicts(
             recheck.RunsVerdict(**each | {"digests": tuple(each["digests"])}) for each in judgements
         )
-        content = recheck.sound(verdict) | {
+        content = recheck.check_sound(verdict) | {
             "digest": verdict.digest,
             "made_by": proof.made_by(),
-            "versions": recheck.versions(),
+            "versions": recheck.read_versions(),
             "studies": self.studies,
             "accounts": [
                 (["verified.json"], self.account),
                 *(
-                    (files, account | opened.contents(opened.kept(key)))
+                    (files, account | opened.hash_contents(opened.read_kept(key)))
                     for files, key, account in self.accounts
                 ),
             ],
             "sha256": {
-                str(file.relative_to(self.folder)): recheck.sha256(file)
+                str(file.relative_to(self.folder)): recheck.compute_sha256(file)
                 for file in sorted({*map(Path, input_files)})
             },
         }

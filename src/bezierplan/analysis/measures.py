@@ -209,8 +209,8 @@ def free_cells(path: Path, grid: Grid) -> int | None:
     """Number of cells that a path touches; None if one of them is occupied."""
     from bezierplan.geometry import cell_length
 
-    columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
-    return None if cell_length.occupied_cells(columns, rows, grid.occupied) else len(columns)
+    columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
+    return None if cell_length.count_occupied_cells(columns, rows, grid.occupied) else len(columns)
 
 
 @on_map(

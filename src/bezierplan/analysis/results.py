@@ -11,9 +11,9 @@ import pandas as pd
 from bezierplan.running import answer
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
-from bezierplan.running.chunk import Chunk, chunk_files
+from bezierplan.running.chunk import Chunk, find_chunk_files
 from bezierplan.running.columns import ANSWER, TABLES
-from bezierplan.running.inputs import Files, by_table
+from bezierplan.running.inputs import Files, group_by_table
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
@@ -25,9 +25,8 @@ class Results(NamedTuple):
     runs: one row per run, columns as in `running.columns`, with the bounds of its problem; one that
     drew no random numbers, and is equal to all others, stands for every repeat.
     problems: by name. bounds: one row per problem, indexed by name, columns as in
-    `problems.bounds_of`. published: the study's published numbers, if requested. jobs: method ->
-    the first chunk of its runs, if runs are reproduced. worlds: by problem, where a world
-    moves.
+    `problems.compute_bounds`. published: the study's published numbers, if requested. jobs: method
+    -> the first chunk of its runs, if runs are reproduced. worlds: by problem, where a world moves.
     """
 
     runs: pd.DataFrame
@@ -51,7 +50,7 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
     known, bounded = row_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
     for file, rows in ((files.problems, known), (files.bounds, bounded)):
         if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
-            raise row_files.misplaced(file, "not of the problems that the runs are of")
+            raise row_files.describe_misplaced(file, "not of the problems that the runs are of")
     problems, moving = problem_files.read(files.problems)
     return joined(table, problems, bounded)._replace(worlds=moving)
 
@@ -61,7 +60,7 @@ def of_folder(folder: FilePath, experiment: str) -> Results:
     as `read` does, and if there are none.
     """
     runs: dict[str, list[str]] = {}
-    for chunk in chunk_files(folder, "runs/*/*/*.parquet"):
+    for chunk in find_chunk_files(folder, "runs/*/*/*.parquet"):
         if chunk.parent.parent.name == experiment:
             runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
@@ -81,14 +80,18 @@ def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.Data
             rows = _read(file, "runs")
             for column, own in (("experiment", experiment), ("method", method)):
                 if others := set(rows[column]) - {own}:
-                    raise row_files.misplaced(file, f"of {column} {min(others)}, not {own}")
+                    raise row_files.describe_misplaced(
+                        file, f"of {column} {min(others)}, not {own}"
+                    )
             if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
-                raise row_files.misplaced(file, "the runs of another chunk")
+                raise row_files.describe_misplaced(file, "the runs of another chunk")
             seen.update(rows["id"])
             beside = str(PurePath(file).with_suffix(".times.parquet"))
             times = _read(beside, "times")
             if sorted(times["id"]) != sorted(rows["id"]):
-                raise row_files.misplaced(beside, f"not the times of {PurePath(file).name}")
+                raise row_files.describe_misplaced(
+                    beside, f"not the times of {PurePath(file).name}"
+                )
             yield rows.merge(times, on="id", validate="one_to_one")
 
 
@@ -102,16 +105,16 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     """
     table, declared = row_files.read(file), TABLES[kind]
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
-    if fault := row_files.fault(table.schema, *declared.every, *drives):
-        raise row_files.misplaced(file, fault)
-    if kind != "times" and row_files.kept_digest(table) != row_files.rows_digest(table):
-        raise row_files.misplaced(file, "its rows are not those that were written")
+    if fault := row_files.find_fault(table.schema, *declared.every, *drives):
+        raise row_files.describe_misplaced(file, fault)
+    if kind != "times" and row_files.read_digest(table) != row_files.compute_digest(table):
+        raise row_files.describe_misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
-    """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as
-    `read` does.
+    """Runs with the bounds of their problems, as from `problems.compute_bounds`. Raises ValueError
+    as `read` does.
     """
     bounds = bounds.set_index("problem")
     runs = _in_every_repeat(runs)
@@ -190,7 +193,7 @@ def published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:
     """Several files of published numbers, by table; files that are not in a folder of that name are
     left out.
     """
-    named = by_table(file for file in files if PurePath(file).parent.name == "published")
+    named = group_by_table(file for file in files if PurePath(file).parent.name == "published")
     return {name: published_table(file) for name, file in named.items()}
 
 
@@ -207,7 +210,7 @@ def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None
 
 def path_of(run: Mapping[str, Any] | pd.Series) -> Path | None:
     """The path of a run, or None if it has none."""
-    return answer.restored(run["path_curve"], run["path_points"])
+    return answer.restore_path(run["path_curve"], run["path_points"])
 
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:

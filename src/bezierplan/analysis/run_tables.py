@@ -9,7 +9,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from bezierplan.running.chunk import chunk_files
+from bezierplan.running.chunk import find_chunk_files
 
 
 def run_tables(folder: Path) -> dict[str, list[Path]]:
@@ -17,7 +17,7 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     FileNotFoundError if there is none.
     """
     tables: dict[str, list[Path]] = {}
-    for file in chunk_files(folder):
+    for file in find_chunk_files(folder):
         *_, folder, reading, _, experiment, method, _ = file.parts
         # A study under a reading has a folder below the study's own.
         study = file.parts[-7:-4] if folder in ("readings", "alternatives") else [reading]
@@ -46,7 +46,7 @@ def row_text(row: dict[str, Any]) -> str:
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     """The rows with this name in the run tables below a folder, by file."""
     study, experiment, _, method, _ = name.split("/")
-    files = chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
+    files = find_chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
     return {file: row for file in files for row in _rows(file, name)}
 
 

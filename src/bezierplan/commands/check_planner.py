@@ -22,7 +22,7 @@ def main(method: str, *, settings: Settings | None = None) -> None:
     check-planner ma2020/bca
     check-planner mystudy/walk.py --settings '{tries: 200}'
     """
-    planner, preset = api.named(method)
+    planner, preset = api.find_method(method)
     passed = []
     for finding in contract.check_planner(planner, preset | (settings or {})):
         print(finding, flush=True)

@@ -10,7 +10,7 @@ from bezierplan.analysis.claims import kinds
 from bezierplan.commands import is_study, studies_of, study_named
 from bezierplan.figures import panels
 from bezierplan.figures.page import in_printed_order
-from bezierplan.planners import known_planners, planner_module, planner_settings
+from bezierplan.planners import list_planners, load_planner, read_settings
 from bezierplan.schema.checked import check_known
 from bezierplan.study.definition import Study
 from bezierplan.workspaces import kinds as workspace_kinds
@@ -56,7 +56,7 @@ def _load_metrics(studies: Iterable[Study]) -> None:
     for study in studies:
         study_code.functions(study.code_for("metrics"))
         for planner in map(study.planner, study.methods):
-            metrics.add_columns(getattr(planner_module(planner), "extra", ()))
+            metrics.add_columns(getattr(load_planner(planner), "extra", ()))
 
 
 def listed(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str, Rows]]:
@@ -79,13 +79,13 @@ def _methods(study: Study) -> Rows:
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
         own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
-        what = filter(None, [_sentence(planner_module(planner)).rstrip("."), own])
+        what = filter(None, [_sentence(load_planner(planner)).rstrip("."), own])
         yield name, f"{planner}{variant}: {'; '.join(what)}"
 
 
 def _settings(study: Study) -> Rows:
     for planner in dict.fromkeys(map(study.planner, study.methods)):
-        for name, declared in planner_settings(planner_module(planner)).items():
+        for name, declared in read_settings(load_planner(planner)).items():
             yield f"{planner}: {name}", f"{declared}; {declared.meaning}"
 
 
@@ -119,6 +119,6 @@ NAMES: dict[str, Callable[[], Rows]] = {
     "panels": lambda: _sentences(panels.kinds()),
     "tests": lambda: _sentences(kinds.kinds()),
     "worlds": lambda: _sentences(workspace_kinds.kinds()),
-    "planners": lambda: _sentences({name: planner_module(name) for name in known_planners()}),
+    "planners": lambda: _sentences({name: load_planner(name) for name in list_planners()}),
 }
 """What the files of a study can name, by kind."""

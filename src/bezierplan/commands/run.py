@@ -40,7 +40,7 @@ def main(*words: str) -> None:
     if not words:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
     importlib.import_module("snakemake")  # or else it is told what to install
-    out, err = map(forks.stream_for, (sys.stdout, sys.stderr))
+    out, err = map(forks.choose_stream, (sys.stdout, sys.stderr))
     workflow = subprocess.Popen(
         command(words), stdout=out, stderr=err, process_group=0, preexec_fn=end_with_parent
     )

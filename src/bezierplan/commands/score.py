@@ -59,7 +59,7 @@ def main(
         made[f"here:{candidate}"] = (
             _read(Path(candidate), asked)
             if candidate.endswith(".csv")
-            else api.answers_to([*asked.values()], candidate, repeats, settings=settings or {})
+            else api._answer([*asked.values()], candidate, repeats, settings=settings or {})
         )
     compared = api.Comparison(made)
     own = benchmark.summaries(compared.runs) if made else stored[:0]

@@ -9,7 +9,7 @@ from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import config_of, cores, study_named
 from bezierplan.machine import opened
-from bezierplan.places import relative
+from bezierplan.places import shorten_path
 from bezierplan.running import recheck
 from bezierplan.study import reading, stored
 from bezierplan.study.jobs import Studies
@@ -59,14 +59,14 @@ def main(
     tasks = _tasks(at, made, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
     faults = [*proof.unlisted(folder, listed), *verdict.faults]
-    again = recheck.made_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
+    again = recheck.run_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
     follow = {name: not isinstance(made[name], _KEPT) for name in made}
     files, others = proof.differing(folder, follow, config, listed.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         wrong.setdefault(fault.file, fault)
-    left, versions = stored.strangers(folder, made), recheck.versions()
+    left, versions = stored.strangers(folder, made), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
     names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
@@ -94,7 +94,7 @@ def main(
 
 def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
     """Return what of the account of a listed file is not that of its job."""
-    now = job.account | opened.contents(account) if job else {}
+    now = job.account | opened.hash_contents(account) if job else {}
     return {name for name in account.keys() | now if account.get(name) != now.get(name)}
 
 
@@ -110,7 +110,7 @@ def _tasks(
         if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
             place, experiment = name.partition("/runs/")[0], job.chunk.experiment
             home = stored.home(at, place, folder.resolve().name, experiment)
-            changed = relative(at[place].folder / "experiments.yaml")
+            changed = shorten_path(at[place].folder / "experiments.yaml")
             task = recheck.StoredRuns(
                 str(folder / home / "problems" / f"{experiment}.parquet"),
                 {},

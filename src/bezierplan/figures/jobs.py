@@ -10,7 +10,7 @@ from bezierplan.analysis.jobs import Job
 from bezierplan.figures.layout import Layout
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Panel
-from bezierplan.machine.digest import module_of
+from bezierplan.machine.digest import name_module
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces.kinds import modules_of
@@ -81,7 +81,7 @@ class FigureFiles(Job):
         return [
             *self.code,
             *(type(panel).__module__ for panel in self.panels),
-            *map(module_of, again),
+            *map(name_module, again),
             *modules_of(self.workspaces | self.problems.workspaces),
         ]
 
@@ -97,7 +97,7 @@ class FigureFiles(Job):
 
         published = results.published_tables(input_files.sources)
         numbers = results.joined_numbers(published)
-        read = results.read_all(inputs.experiments(self.shows, input_files), self.repeats)
+        read = results.read_all(inputs.group_by_experiment(self.shows, input_files), self.repeats)
         experiments = {
             name: runs._replace(published=numbers, jobs=self.chunks.get(name))
             for name, runs in read.items()
@@ -145,6 +145,6 @@ class Page(Job):
             folder,
             list(input_files.summary),
             input_files.verified,
-            results=inputs.experiments(self.shows, input_files),
+            results=inputs.group_by_experiment(self.shows, input_files),
         )
         Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")

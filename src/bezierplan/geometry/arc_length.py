@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 
 _NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
 _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
 @allocation_free
-def _speed(differences: np.ndarray, t: float) -> float:
+def _compute_speed(differences: np.ndarray, t: float) -> float:
     """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule."""
     n = len(differences) - 1
     s = 1.0 - t
@@ -32,7 +32,7 @@ def _speed(differences: np.ndarray, t: float) -> float:
 
 
 @allocation_free
-def _integral(
+def _integrate_speed(
     differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray
 ) -> float:
     """Gauss-Legendre quadrature of the speed between two parameters; nodes, weights: (n,), on -1 to
@@ -40,12 +40,12 @@ def _integral(
     """
     total = 0.0
     for node, weight in zip(nodes, weights):
-        total += weight * _speed(differences, 0.5 * ((high - low) * node + high + low))
+        total += weight * _compute_speed(differences, 0.5 * ((high - low) * node + high + low))
     return 0.5 * (high - low) * total
 
 
-@compiled
-def piece_length(piece: np.ndarray) -> float:
+@compile_kernel
+def measure_piece(piece: np.ndarray) -> float:
     """Arc length of one Bézier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive
     Gauss-Legendre quadrature of its speed.
 
@@ -62,8 +62,8 @@ def piece_length(piece: np.ndarray) -> float:
     stack = [(0.0, 1.0)]
     while stack:
         low, high = stack.pop()
-        coarse = _integral(differences, low, high, _NODES_8, _WEIGHTS_8)
-        fine = _integral(differences, low, high, _NODES_16, _WEIGHTS_16)
+        coarse = _integrate_speed(differences, low, high, _NODES_8, _WEIGHTS_8)
+        fine = _integrate_speed(differences, low, high, _NODES_16, _WEIGHTS_16)
         if abs(coarse - fine) <= 1e-11 * scale * max(high - low, 1e-4) or high - low < 1e-12:
             total += fine
         else:

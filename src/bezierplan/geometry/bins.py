@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 
 # Bins are no smaller, in units, so that their margins are wider than the checker's tolerance.
 _LEAST_SIDE = 1e-4
@@ -29,7 +29,7 @@ class Bins(NamedTuple):
     members: np.ndarray
 
 
-def bins_of(edges: np.ndarray) -> Bins:
+def sort_into_bins(edges: np.ndarray) -> Bins:
     """The bins of edges (n, 4), about as many as there are edges."""
     ends = edges.reshape(-1, 2) if len(edges) else np.zeros((1, 2))
     low = ends.min(axis=0)
@@ -41,7 +41,7 @@ def bins_of(edges: np.ndarray) -> Bins:
     return bins._replace(first=first, members=members)
 
 
-@compiled
+@compile_kernel
 def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """The numbers of the edges of each bin, ascending."""
     places, passing = [0], [0]

@@ -3,9 +3,9 @@ diagonal one (elhoseny2017, Section 4.6).
 
 The paper counts points on the curve, and does not say how near they lie. `length_by_points` counts
 points a cell apart. The nearer they lie, the more of the cells that the curve touches are counted,
-up to all of them: `cells4`, by which a free diagonal of N cells costs 1.5 N and any other curve
-that is monotone in x and y about 2 N. `cells8` leaves out the corner cells of that sequence, as
-line rasterisation usually does.
+up to all of them: `measure_cells4`, by which a free diagonal of N cells costs 1.5 N and any other
+curve that is monotone in x and y about 2 N. `measure_cells8` leaves out the corner cells of that
+sequence, as line rasterisation usually does.
 
 In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i
 reaches from i to i + 1.
@@ -43,7 +43,7 @@ _CENTRE = 1e-9
 
 
 @allocation_free
-def parts(points: np.ndarray) -> int:
+def count_parts(points: np.ndarray) -> int:
     """Return the number of equal parameter intervals over each of which a Bézier piece (degree + 1,
     2), in cells, moves less than one cell.
 
@@ -100,7 +100,7 @@ def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shorter = np.repeat(piece[None], CUT if points > HIGH else 1, axis=0)
         cut(shorter, points)
         for each in shorter:
-            x, y = sample(each, parts(each))
+            x, y = sample(each, count_parts(each))
             xs.append(x)
             ys.append(y)
     return np.concatenate(xs), np.concatenate(ys)
@@ -156,7 +156,7 @@ def write_samples(
 
 
 @allocation_free
-def _cell(coordinate: float, before: int) -> int:
+def _find_cell(coordinate: float, before: int) -> int:
     """Column or row of a coordinate; next to a grid line, that of the previous sample if close."""
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
@@ -164,7 +164,7 @@ def _cell(coordinate: float, before: int) -> int:
     return math.floor(coordinate)
 
 
-def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are
     less than a cell apart.
 
@@ -177,12 +177,12 @@ def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 @allocation_free
 def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> int:
-    """Write the `touched_cells` of a polyline (n,), at most 2 n; returns their number."""
+    """Write the `list_touched_cells` of a polyline (n,), at most 2 n; returns their number."""
     column, row = math.floor(x[0]), math.floor(y[0])
     columns[0], rows[0] = column, row
     count = 1
     for s in range(1, len(x)):
-        next_column, next_row = _cell(x[s], column), _cell(y[s], row)
+        next_column, next_row = _find_cell(x[s], column), _find_cell(y[s], row)
         if next_column == column and next_row == row:
             continue
         if next_column != column and next_row != row:
@@ -199,7 +199,7 @@ def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows:
 
 
 @allocation_free
-def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
+def count_occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
     """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool
     (rows, columns).
     """
@@ -214,8 +214,8 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Whether all cells that a straight leg touches are free; cells outside the grid are not free.
 
-    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A
-    leg counts as passing through a corner if it comes so close that no sample could tell the
+    These are the cells of `list_touched_cells`, found without samples: from grid line to grid line.
+    A leg counts as passing through a corner if it comes so close that no sample could tell the
     difference, so no leg is free here that is not free there.
     """
     rows, columns = occupied.shape
@@ -259,7 +259,7 @@ def _last_cell(first: float, last: float) -> int:
 
 
 @allocation_free
-def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
+def measure_cells4(columns: np.ndarray, rows: np.ndarray) -> float:
     """Length of a sequence of cells, each a neighbour of the one before."""
     length = 0.0
     for i in range(1, len(columns)):
@@ -269,7 +269,7 @@ def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
 
 
 @allocation_free
-def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
+def measure_cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     """Length of a sequence of cells in which two straight steps that form a diagonal one are
     replaced by it, from the beginning onwards.
     """
@@ -310,7 +310,7 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
     return length
 
 
-def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def sample_in_cells(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
     return walk(grid.in_cells(curves.bezier_pieces(path)))
 
@@ -324,7 +324,7 @@ def length_by_points(path: Path, grid: Grid) -> float:
     >>> length_by_points(Path("polyline", np.array([[0.5, 0.5], [2.5, 0.5], [3.5, 1.5]])), field)
     3.5
     """
-    walked = np.column_stack(samples(path, grid))
+    walked = np.column_stack(sample_in_cells(path, grid))
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(walked, axis=0).T))])
     wanted = np.linspace(0.0, at[-1], math.ceil(at[-1]) + 1)
     points = np.column_stack([np.interp(wanted, at, along) for along in walked.T])
@@ -336,19 +336,19 @@ def length_by_points(path: Path, grid: Grid) -> float:
 
 
 def length4(path: Path, grid: Grid) -> float:
-    """`cells4` of a path, in units.
+    """`measure_cells4` of a path, in units.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
     >>> length4(Path("polyline", np.array([[0.5, 0.5], [2.5, 1.5]])), field)
     3.0
     """
-    return cells4(*touched_cells(*samples(path, grid))) * grid.cell
+    return measure_cells4(*list_touched_cells(*sample_in_cells(path, grid))) * grid.cell
 
 
 def length8(path: Path, grid: Grid) -> float:
-    """`cells8` of a path, in units. A path that runs from centre to centre of neighbouring cells is
-    measured on exactly these cells.
+    """`measure_cells8` of a path, in units. A path that runs from centre to centre of
+    neighbouring cells is measured on exactly these cells.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
@@ -356,7 +356,9 @@ def length8(path: Path, grid: Grid) -> float:
     2.5
     """
     own = _is_cell_path(path, grid)
-    return (cells4 if own else cells8)(*touched_cells(*samples(path, grid))) * grid.cell
+    return (measure_cells4 if own else measure_cells8)(
+        *list_touched_cells(*sample_in_cells(path, grid))
+    ) * grid.cell
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:

@@ -83,7 +83,7 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
     if curve == "ferguson":
         matrix = _hermite_pieces(own[::2], own[1::2])
     elif curve in _CHAINS:
-        matrix = own[_chained(points, _CHAINS[curve])]
+        matrix = own[_index_chain(points, _CHAINS[curve])]
     elif curve == "spline":
         matrix = _spline_pieces(points)
     else:
@@ -116,7 +116,7 @@ def _spline_pieces(points: int) -> np.ndarray:
     return _hermite_pieces(np.eye(points), slopes)
 
 
-def _chained(points: int, degree: int) -> np.ndarray:
+def _index_chain(points: int, degree: int) -> np.ndarray:
     """Indices of the control points of each piece of a chain: (pieces, degree + 1)."""
     return np.arange(0, points - 1, degree)[:, None] + np.arange(degree + 1)
 
@@ -144,7 +144,7 @@ def bezier_pieces(path: Path) -> np.ndarray:
     points = np.asarray(path.points, dtype=float)
     # Indices avoid a matrix that grows with the square of the number of pieces.
     if path.curve in _CHAINS and len(points) > 1:
-        return points[_chained(len(points), _CHAINS[path.curve])]
+        return points[_index_chain(len(points), _CHAINS[path.curve])]
     return piece_matrix(path.curve, len(points)) @ points
 
 
@@ -204,9 +204,10 @@ def length(path: Path) -> float:
 
 def length_of(pieces: np.ndarray) -> float:
     """`length` of a path, from its Bézier pieces (pieces, degree + 1, 2)."""
-    from bezierplan.geometry.arc_length import piece_length
 
-    return math.fsum(map(piece_length, pieces))
+    from bezierplan.geometry.arc_length import measure_piece
+
+    return math.fsum(map(measure_piece, pieces))
 
 
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:

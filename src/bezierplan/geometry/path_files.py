@@ -34,18 +34,18 @@ def write_geojson(file: Path, samples: Samples, values: Mapping[str, Any]) -> No
 
 def write_json(file: Path, values: Mapping[str, Any]) -> None:
     """Values as JSON; nan and infinity, which it does not know, become null."""
-    file.write_text(json.dumps(_plain(values)) + "\n", encoding="utf-8")
+    file.write_text(json.dumps(_convert_to_plain(values)) + "\n", encoding="utf-8")
 
 
-def _plain(value: Any) -> Any:
+def _convert_to_plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {name: _plain(each) for name, each in value.items()}
+        return {name: _convert_to_plain(each) for name, each in value.items()}
     if hasattr(value, "_asdict"):
-        return _plain(value._asdict())
+        return _convert_to_plain(value._asdict())
     if hasattr(value, "tolist"):  # of numpy
-        return _plain(value.tolist())
+        return _convert_to_plain(value.tolist())
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [_convert_to_plain(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

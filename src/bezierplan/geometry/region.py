@@ -114,7 +114,7 @@ Region = GridRegion | CircleRegion | PolygonRegion
 
 # Few: that of a map of 4,000 x 4,000 cells takes half a gigabyte.
 @lru_cache(maxsize=4)
-def region(workspace: Workspace) -> Region:
+def build_region(workspace: Workspace) -> Region:
     """The blocked region of a workspace; of cells drawn from polygons, that of the polygons.
 
     Parameters
@@ -128,15 +128,15 @@ def region(workspace: Workspace) -> Region:
         It shares no memory with the workspace. Those of the last maps are remembered.
     """
     if isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
-        return _polygon_region(workspace.shapes)
+        return _build_polygon_region(workspace.shapes)
     if isinstance(workspace, Grid):
-        return _grid_region(workspace)
+        return _build_grid_region(workspace)
     if isinstance(workspace, Circles):
-        return _circle_region(workspace)
-    return _polygon_region(workspace)
+        return _build_circle_region(workspace)
+    return _build_polygon_region(workspace)
 
 
-def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
+def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
     """Whether a point lies in the blocked region. Meant for single points: it needs no compiled
     code.
 
@@ -200,16 +200,16 @@ def border_edges(bounds: Bounds) -> np.ndarray:
     return np.hstack([corners, np.roll(corners, -1, axis=0)])
 
 
-def walled(occupied: np.ndarray) -> np.ndarray:
+def add_wall(occupied: np.ndarray) -> np.ndarray:
     """Occupied cells with a ring of occupied cells around them that represents the outside: bool
     (rows + 2, columns + 2).
     """
     return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
 
 
-def occupied_around(cells: np.ndarray) -> np.ndarray:
-    """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1,
-    columns + 1).
+def find_occupied_around(cells: np.ndarray) -> np.ndarray:
+    """Return which cells around each inner vertex of cells with a wall (`add_wall`) are occupied:
+    bool (4, rows + 1, columns + 1).
 
     In the order below left, below right, above left, above right. Vertex [i, j] lies at x = j and y
     = i, in cells.
@@ -217,17 +217,17 @@ def occupied_around(cells: np.ndarray) -> np.ndarray:
     return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
 
 
-def _grid_region(grid: Grid) -> GridRegion:
-    from bezierplan.geometry.bins import bins_of
+def _build_grid_region(grid: Grid) -> GridRegion:
+    from bezierplan.geometry.bins import sort_into_bins
 
-    cells = walled(grid.occupied)
+    cells = add_wall(grid.occupied)
     blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), dtype=bool)
     blocked[::2, ::2] = cells
     blocked[1::2, ::2] = cells[:-1] & cells[1:]
     blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
-    blocked[1::2, 1::2] = occupied_around(cells).all(axis=0)
-    horizontal = runs_of(cells[:-1, 1:-1] != cells[1:, 1:-1])
-    vertical = runs_of(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
+    blocked[1::2, 1::2] = find_occupied_around(cells).all(axis=0)
+    horizontal = find_runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
+    vertical = find_runs(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
     edges = np.ascontiguousarray(
         np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell
     )
@@ -239,11 +239,11 @@ def _grid_region(grid: Grid) -> GridRegion:
         # Sums of what lies below and to the left of each corner.
         np.pad(blocked.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0))),
         edges,
-        bins_of(edges),
+        sort_into_bins(edges),
     )
 
 
-def runs_of(boundary: np.ndarray) -> np.ndarray:
+def find_runs(boundary: np.ndarray) -> np.ndarray:
     """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column
     after the last.
     """
@@ -253,8 +253,8 @@ def runs_of(boundary: np.ndarray) -> np.ndarray:
     return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
 
 
-def _circle_region(circles: Circles) -> CircleRegion:
-    from bezierplan.geometry.bins import bins_of
+def _build_circle_region(circles: Circles) -> CircleRegion:
+    from bezierplan.geometry.bins import sort_into_bins
 
     edges = border_edges(circles.bounds)
     # Copies: a region shares no memory with the workspace that a planner holds.
@@ -263,14 +263,14 @@ def _circle_region(circles: Circles) -> CircleRegion:
         np.array(circles.radii, dtype=float),
         np.array(circles.bounds, dtype=float),
         edges,
-        bins_of(edges),
+        sort_into_bins(edges),
     )
 
 
-def _polygon_region(polygons: Polygons) -> PolygonRegion:
-    from bezierplan.geometry.bins import bins_of
+def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
+    from bezierplan.geometry.bins import sort_into_bins
 
-    cornered = [_corners(ring) for ring in rings(polygons.free())]
+    cornered = [_list_corners(ring) for ring in rings(polygons.free())]
     begin = np.concatenate([np.empty((0, 2)), *cornered])
     following = np.empty(len(begin), dtype=np.int64)
     first = 0
@@ -283,10 +283,10 @@ def _polygon_region(polygons: Polygons) -> PolygonRegion:
     normals = np.column_stack([-direction[:, 1], direction[:, 0]])
     convex = cross(direction, direction[following]) < 0
     edges = np.hstack([begin, end])
-    return PolygonRegion(edges, normals, following, preceding, convex, bins_of(edges))
+    return PolygonRegion(edges, normals, following, preceding, convex, sort_into_bins(edges))
 
 
-def _corners(ring: np.ndarray) -> np.ndarray:
+def _list_corners(ring: np.ndarray) -> np.ndarray:
     """A ring (n, 2) without repeated and collinear vertices."""
     ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
     arriving = unit(ring - np.roll(ring, 1, axis=0))

@@ -31,7 +31,7 @@ class Samples(NamedTuple):
     curvature: np.ndarray
 
 
-def along(path: Path, n: int | None = None, step: float | None = None) -> Samples:
+def sample_along(path: Path, n: int | None = None, step: float | None = None) -> Samples:
     """Samples of a path at equal distances, both ends included.
 
     Parameters

@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bezierplan.places import PACKAGE, cache_folder
+from bezierplan.places import PACKAGE, find_cache_folder
 
 ROOT = PACKAGE.name
 
@@ -53,7 +53,7 @@ class _Module(NamedTuple):
 
     def file(self) -> Path | None:
         """The module's source file, or None."""
-        return _file(self.home, self.name)
+        return _find_file(self.home, self.name)
 
     def parents(self) -> set["_Module"]:
         """The packages that contain the module."""
@@ -62,7 +62,7 @@ class _Module(NamedTuple):
 
 
 @cache
-def _file(home: Path, name: str) -> Path | None:
+def _find_file(home: Path, name: str) -> Path | None:
     """The source file of a module, by its dotted name in a folder, or None."""
     place = home.joinpath(*name.split("."))
     # A file outside the package may have dots in its name.
@@ -70,16 +70,16 @@ def _file(home: Path, name: str) -> Path | None:
     return next((file for file in places if file.is_file()), None)
 
 
-def _module(name: str) -> _Module:
-    """A module from an argument of `source_digest`."""
+def _read_module(name: str) -> _Module:
+    """A module from an argument of `compute_source_digest`."""
     if name.endswith(".py"):
         file = Path(name).resolve()
         return _Module(file.parent, file.stem)
     return _Module(PACKAGE.parent, name)
 
 
-def module_of(planner: str) -> str:
-    """A planner, given as a name or the path of a file, as an argument of `source_digest`."""
+def name_module(planner: str) -> str:
+    """Return the argument of `compute_source_digest` for a planner, a name or a path."""
     return planner if planner.endswith(".py") else f"{PACKAGE.name}.planners.{planner}"
 
 
@@ -94,18 +94,18 @@ class _Syntax(NamedTuple):
 
 
 @cache
-def _syntax(file: Path) -> _Syntax:
+def _parse_file(file: Path) -> _Syntax:
     """Return the syntax of a file, kept from earlier processes: parsing takes as long as
     importing.
     """
     source = file.read_bytes()
     # What was kept by other code than this module's is not read.
     name = hashlib.sha256(source + Path(__file__).read_bytes()).hexdigest()
-    kept = cache_folder() / "syntax" / f"{name}.json"
+    kept = find_cache_folder() / "syntax" / f"{name}.json"
     try:
         return _Syntax(*json.loads(kept.read_bytes()))
     except (OSError, ValueError, TypeError):
-        parsed = _parsed(source)
+        parsed = _parse(source)
     # Nothing depends on whether it can be kept.
     with contextlib.suppress(OSError):
         keep_json(parsed, kept)
@@ -120,12 +120,12 @@ def keep_json(content: Any, file: Path) -> None:
     part.replace(file)
 
 
-def docstring(module: str) -> str:
+def read_docstring(module: str) -> str:
     """Return the docstring of a module, which is read and not imported."""
-    return _syntax(_module(module).file()).about
+    return _parse_file(_read_module(module).file()).about
 
 
-def _parsed(source: bytes) -> _Syntax:
+def _parse(source: bytes) -> _Syntax:
     tree = ast.parse(source)
     about = ast.get_docstring(tree) or ""
     imports = set()
@@ -147,32 +147,32 @@ def _parsed(source: bytes) -> _Syntax:
         ):
             # The words about a planner's setting; what remains is its unit.
             node.args = node.args[2:]
-    return _Syntax(_digest(repr(_nested(tree))), sorted(map(list, imports)), about)
+    return _Syntax(_compute_digest(repr(_nest(tree))), sorted(map(list, imports)), about)
 
 
-def _nested(part: Any) -> tuple | str:
+def _nest(part: Any) -> tuple | str:
     """Return a syntax tree as nested tuples, without fields that are empty: newer Pythons have
     more of these.
     """
     if isinstance(part, ast.AST):
-        fields = ((name, _nested(value)) for name, value in ast.iter_fields(part))
+        fields = ((name, _nest(value)) for name, value in ast.iter_fields(part))
         return (type(part).__name__, *(each for each in fields if each[1] not in ("None", ())))
-    return tuple(map(_nested, part)) if isinstance(part, list) else repr(part)
+    return tuple(map(_nest, part)) if isinstance(part, list) else repr(part)
 
 
-def _digest(text: str) -> str:
+def _compute_digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
-def _imports(module: _Module) -> set[_Module]:
+def _find_imports(module: _Module) -> set[_Module]:
     """The modules that a module imports, with their packages: from this package and, for a file
     outside it, from the file's folder.
     """
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
     modules = set()
-    for level, base, name in _syntax(file).imports:
+    for level, base, name in _parse_file(file).imports:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
@@ -184,7 +184,7 @@ def _imports(module: _Module) -> set[_Module]:
     return found.union(*(each.parents() for each in found))
 
 
-def source_digest(*modules: str) -> str:
+def compute_source_digest(*modules: str) -> str:
     """Digest of modules and everything that they import, directly or indirectly, from this package
     or, for a file, from its folder.
 
@@ -192,16 +192,16 @@ def source_digest(*modules: str) -> str:
     Comments, docstrings and layout do not count: the digest is taken over syntax trees. Raises
     ValueError for a missing module.
     """
-    return _reached(*modules).digest
+    return _find_reached(*modules).digest
 
 
-def sources(*modules: str) -> list[Path]:
-    """Return the files of code on which `source_digest` of modules depends."""
-    return _reached(*modules).files
+def find_sources(*modules: str) -> list[Path]:
+    """Return the files of code on which `compute_source_digest` of modules depends."""
+    return _find_reached(*modules).files
 
 
 @cache
-def code_account(functions: tuple[Callable, ...], *modules: str) -> dict[str, str]:
+def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, str]:
     """Return the digest of some functions, of all that they import from this package, and of
     further modules, and by name the versions of the libraries among `COMPUTING` that these import:
     what a job's results depend on.
@@ -209,28 +209,28 @@ def code_account(functions: tuple[Callable, ...], *modules: str) -> dict[str, st
     trees = []
     named = set(modules)
     for function in functions:
-        tree, imports, _ = _parsed(textwrap.dedent(inspect.getsource(function)).encode())
+        tree, imports, _ = _parse(textwrap.dedent(inspect.getsource(function)).encode())
         trees.append(tree)
         named.update(
             name
             for _, base, part in imports
             for name in (base, f"{base}.{part}")
-            if name.split(".")[0] == ROOT and _module(name).file()
+            if name.split(".")[0] == ROOT and _read_module(name).file()
         )
-    reached = _reached(*sorted(named))
-    versions = {name: library_version(name) for name in sorted(reached.libraries)}
-    return {"code": _digest(" ".join([*trees, reached.digest]))} | versions
+    reached = _find_reached(*sorted(named))
+    versions = {name: find_library_version(name) for name in sorted(reached.libraries)}
+    return {"code": _compute_digest(" ".join([*trees, reached.digest]))} | versions
 
 
 @cache
-def library_version(name: str) -> str:
+def find_library_version(name: str) -> str:
     """The version of an installed library."""
     return importlib.metadata.version(name)
 
 
 class _Reach(NamedTuple):
-    """What modules depend on: the digest of `source_digest`; the libraries among `COMPUTING` that
-    are imported anywhere; and files of source.
+    """What modules depend on: the digest of `compute_source_digest`; the libraries among
+    `COMPUTING` that are imported anywhere; and files of source.
     """
 
     digest: str
@@ -239,9 +239,9 @@ class _Reach(NamedTuple):
 
 
 @cache
-def _reached(*modules: str) -> _Reach:
+def _find_reached(*modules: str) -> _Reach:
     todo, texts, libraries = [], {}, set()
-    for module in map(_module, modules):
+    for module in map(_read_module, modules):
         if module.file() is None:
             raise ValueError(f"no module {module.name} in {module.home}")
         todo += [module, *module.parents()]
@@ -251,16 +251,16 @@ def _reached(*modules: str) -> _Reach:
             # What a module declares may stand in a file of data with its name.
             beside = module.file().with_suffix(".csv")
             data = beside.read_text(encoding="utf-8") if beside.is_file() else ""
-            texts[module] = f"{module.name} {_syntax(module.file()).tree}{data}"
-            todo += _imports(module)
-            for level, base, _ in _syntax(module.file()).imports:
+            texts[module] = f"{module.name} {_parse_file(module.file()).tree}{data}"
+            todo += _find_imports(module)
+            for level, base, _ in _parse_file(module.file()).imports:
                 libraries.update(COMPUTING.get(base.split(".")[0], ()) if not level else ())
-    digest = _digest("\n".join(sorted(texts.values())))
+    digest = _compute_digest("\n".join(sorted(texts.values())))
     return _Reach(digest, libraries, [module.file() for module in texts])
 
 
 @cache
-def content_digest(*files: str) -> str:
+def compute_content_digest(*files: str) -> str:
     """Return the digest of the content of files, in this order: unlike a timestamp, it shows a
     change. A file that is not there has another one than an empty file.
     """
@@ -272,7 +272,7 @@ def content_digest(*files: str) -> str:
 
 
 @cache
-def state_of(module: str, file: str) -> str:
+def name_state(module: str, file: str) -> str:
     """Return a name of the current state of a module, ours or the user's."""
-    ours = module.split(".")[0] == ROOT and _module(module).file() is not None
-    return f"{Path(file).stem}-{source_digest(module if ours else file)}"
+    ours = module.split(".")[0] == ROOT and _read_module(module).file() is not None
+    return f"{Path(file).stem}-{compute_source_digest(module if ours else file)}"

@@ -36,11 +36,14 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
-from bezierplan.machine.digest import state_of
-from bezierplan.places import cache_folder, user_cache_folder
+from bezierplan.machine.digest import name_state
+from bezierplan.places import find_cache_folder, find_user_cache_folder
 
 _VERSIONS = (platform.python_version(), numba.__version__, llvmlite.__version__)
-FOLDERS = [user_cache_folder() / "-".join(["kernels", *_VERSIONS]), cache_folder() / "kernels"]
+FOLDERS = [
+    find_user_cache_folder() / "-".join(["kernels", *_VERSIONS]),
+    find_cache_folder() / "kernels",
+]
 """Folders of the compiled kernels of all modules: the first one that can be written."""
 MOST_BYTES = 500_000_000
 _DAY = 86_400.0
@@ -157,7 +160,7 @@ class Kernel(CPUDispatcher):
 
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
-        state = state_of(self.py_func.__module__, inspect.getfile(self.py_func))
+        state = name_state(self.py_func.__module__, inspect.getfile(self.py_func))
         for folder in FOLDERS:
             if _can_be_written(folder / state):
                 self._cache = KernelCache(self.py_func, folder / state)
@@ -173,7 +176,7 @@ class Kernel(CPUDispatcher):
                 # passes.
                 sig = tuple(map(unliteral, sig))
             if isinstance(self._cache, NullCache):
-                with _rare_garbage_collection():
+                with _collect_garbage_rarely():
                     return super().compile(sig)
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 return super().compile(sig)
@@ -181,7 +184,7 @@ class Kernel(CPUDispatcher):
             folder = Path(self._cache.cache_path)
             with contextlib.suppress(OSError):  # another process may remove them too
                 remove_old(folder.parent, MOST_BYTES)
-            with _alone(folder, self.locks), _rare_garbage_collection():
+            with _lock_alone(folder, self.locks), _collect_garbage_rarely():
                 return super().compile(sig)
 
 
@@ -208,7 +211,7 @@ def _tell() -> None:
 
 
 @contextmanager
-def _rare_garbage_collection() -> Iterator[None]:
+def _collect_garbage_rarely() -> Iterator[None]:
     """Collect garbage less often."""
     before = gc.get_threshold()
     gc.set_threshold(*COLLECTION_THRESHOLDS)
@@ -219,7 +222,7 @@ def _rare_garbage_collection() -> Iterator[None]:
 
 
 @contextmanager
-def _alone(folder: Path, locks: list[Path]) -> Iterator[None]:
+def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
     """Hold the lock of a folder of kernels; the operating system releases it if this process is
     killed. locks: folders in which this process compiles, each for a kernel of the one before.
 
@@ -232,7 +235,7 @@ def _alone(folder: Path, locks: list[Path]) -> Iterator[None]:
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
         until = time.monotonic() + (PATIENCE if locks else math.inf)
-        while not _locked(lock) and time.monotonic() < until:
+        while not _is_locked(lock) and time.monotonic() < until:
             time.sleep(LOOK)
         locks.append(folder)
         try:
@@ -241,7 +244,7 @@ def _alone(folder: Path, locks: list[Path]) -> Iterator[None]:
             locks.pop()
 
 
-def _locked(lock: Any) -> bool:
+def _is_locked(lock: Any) -> bool:
     """Whether a file is locked now by this process, or cannot be locked at all."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

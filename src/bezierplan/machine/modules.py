@@ -21,7 +21,7 @@ def is_file(name: str) -> bool:
 
 
 @cache
-def module(name: str) -> ModuleType:
+def load_module(name: str) -> ModuleType:
     """A module: `bezierplan.a.b` of this package, or `folder/name.py`, a user's file, which can
     import the modules next to it at the top of the file.
 
@@ -52,9 +52,9 @@ def module(name: str) -> ModuleType:
     return made
 
 
-def code_of(study: str, folder: str) -> dict[str, str]:
-    """The code of a study, as names for `module`, by its part of `PARTS`: files of its folder, or
-    for a paper of this project modules of `bezierplan.papers`.
+def find_code(study: str, folder: str) -> dict[str, str]:
+    """The code of a study, as names for `load_module`, by its part of `PARTS`: files of its folder,
+    or for a paper of this project modules of `bezierplan.papers`.
     """
     ours = PACKAGE / "papers" / study
     if ours.is_dir():
@@ -65,7 +65,7 @@ def code_of(study: str, folder: str) -> dict[str, str]:
 
 
 @cache
-def kinds_in(folder: str, part: str) -> dict[str, str]:
+def find_kinds(folder: str, part: str) -> dict[str, str]:
     """Name -> module, of one file per kind: those of a folder of this package, and those that the
     folders `part` of its papers hold.
     """

@@ -14,9 +14,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bezierplan.machine.digest import content_digest, keep_json
+from bezierplan.machine.digest import compute_content_digest, keep_json
 from bezierplan.machine.modules import USERS
-from bezierplan.places import PACKAGE, cache_folder, relative
+from bezierplan.places import PACKAGE, find_cache_folder, shorten_path
 
 OPENS = "opens "
 RECORDS = Path(".snakemake") / "opened"
@@ -26,7 +26,7 @@ SEEN: set[str] = set()
 # What belongs to the system, to libraries, to this package or to a user's caches.
 _ELSEWHERE = (
     *("/proc/", "/sys/", "/dev/", "/etc/", "/usr/", f"{Path.home()}/."),
-    *map(os.path.realpath, (sys.prefix, sys.base_prefix, PACKAGE, cache_folder())),
+    *map(os.path.realpath, (sys.prefix, sys.base_prefix, PACKAGE, find_cache_folder())),
 )
 
 
@@ -52,19 +52,21 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
 
 def keep(job: str, known: Iterable[str | Path]) -> None:
     """Keep the files that this process has noted but for some, for the job of a key."""
-    before, files = kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, known)})
-    if new := {f"{OPENS}{relative(Path(file))}" for file in files} - before.keys():
-        keep_json(before | contents(sorted(new)), RECORDS / f"{job}.json")
+    before, files = read_kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, known)})
+    if new := {f"{OPENS}{shorten_path(Path(file))}" for file in files} - before.keys():
+        keep_json(before | hash_contents(sorted(new)), RECORDS / f"{job}.json")
 
 
-def kept(job: str) -> dict[str, str]:
+def read_kept(job: str) -> dict[str, str]:
     """Return what was kept for a job: `opens FILE` -> the digest of what the file first held."""
     file = RECORDS / f"{job}.json"
     return json.loads(file.read_text()) if file.is_file() else {}
 
 
-def contents(names: Iterable[str]) -> dict[str, str]:
+def hash_contents(names: Iterable[str]) -> dict[str, str]:
     """Return, by each name `opens FILE`, the digest of what the file holds now."""
     return {
-        name: content_digest(name.removeprefix(OPENS)) for name in names if name.startswith(OPENS)
+        name: compute_content_digest(name.removeprefix(OPENS))
+        for name in names
+        if name.startswith(OPENS)
     }

@@ -27,8 +27,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.machine.modules import is_file, module
-from bezierplan.planners.parts.settings import About, Range, Setting, setting_fault, settings_of
+from bezierplan.machine.modules import is_file, load_module
+from bezierplan.planners.parts.settings import (
+    About,
+    Range,
+    Setting,
+    find_setting_fault,
+    list_settings,
+)
 from bezierplan.workspaces.problem import Path, Problem
 
 __all__ = [
@@ -38,11 +44,11 @@ __all__ = [
     "Problem",
     "Range",
     "Setting",
+    "find_setting_fault",
     "is_file",
-    "known_planners",
-    "planner_module",
-    "planner_settings",
-    "setting_fault",
+    "list_planners",
+    "load_planner",
+    "read_settings",
 ]
 
 
@@ -92,16 +98,16 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 
 
 @cache
-def planner_module(planner: str) -> ModuleType:
+def load_planner(planner: str) -> ModuleType:
     """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a
     user's own file, which can import the modules next to it at the top of the file.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
-    return module(planner if is_file(planner) else f"bezierplan.planners.{planner}")
+    return load_module(planner if is_file(planner) else f"bezierplan.planners.{planner}")
 
 
-def known_planners() -> list[str]:
+def list_planners() -> list[str]:
     """Names of the planners of this package."""
     return sorted(
         file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__"
@@ -109,6 +115,6 @@ def known_planners() -> list[str]:
 
 
 @cache
-def planner_settings(module: ModuleType) -> dict[str, Setting]:
+def read_settings(module: ModuleType) -> dict[str, Setting]:
     """Settings of a planner, by name, in the order of its signature. Do not modify the result."""
-    return settings_of(module.plan)
+    return list_settings(module.plan)

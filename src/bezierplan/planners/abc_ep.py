@@ -15,10 +15,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import roulette
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.genetic import draw_parents
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
@@ -113,10 +113,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-@compiled
+@compile_kernel
 def _search(colony_rng, evolution_rng, occupied, start, target, rules):
     """Points (points, 2) of the path, if found, and the least length so far (generations + 1,)."""
-    path = _first_path(colony_rng, occupied, start, target, rules)
+    path = _build_first_path(colony_rng, occupied, start, target, rules)
     if len(path) == 0:
         return path, np.full(1, np.inf)
     return _evolve(evolution_rng, occupied, _cut_short(occupied, path), rules)
@@ -126,8 +126,8 @@ def _search(colony_rng, evolution_rng, occupied, start, target, rules):
 # The colony
 
 
-@compiled
-def _first_path(rng, occupied, start, target, rules):
+@compile_kernel
+def _build_first_path(rng, occupied, start, target, rules):
     """A free path (points, 2), point by point until the target is in sight; empty if no free point
     is found or `_MOST_POINTS` do not suffice.
     """
@@ -140,14 +140,14 @@ def _first_path(rng, occupied, start, target, rules):
             return path[: count + 1].copy()
         if (
             count <= _MOST_POINTS
-            and _next_point(rng, occupied, target, path, count, rules) >= _UNSEEN
+            and _append_next_point(rng, occupied, target, path, count, rules) >= _UNSEEN
         ):
             break
     return np.empty((0, 2))
 
 
-@compiled
-def _next_point(rng, occupied, target, path, count, rules):
+@compile_kernel
+def _append_next_point(rng, occupied, target, path, count, rules):
     """Append, in place, the best point found to the first `count` of a path. Returns its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
@@ -159,7 +159,7 @@ def _next_point(rng, occupied, target, path, count, rules):
     best, best_cost = path[count], np.inf
     for i in range(_SOURCES):
         _draw(rng, low, high, x[i])
-        cost[i] = _cost(occupied, target, path, count, x[i], rules)
+        cost[i] = _compute_cost(occupied, target, path, count, x[i], rules)
 
     for cycle in range(rules.cycles + 1):
         # The best point is recorded before its source can be redrawn.
@@ -172,20 +172,20 @@ def _next_point(rng, occupied, target, path, count, rules):
         for i in range(_SOURCES):
             if failures[i] >= _TRIAL_LIMIT:  # a scout
                 _draw(rng, low, high, x[i])
-                cost[i] = _cost(occupied, target, path, count, x[i], rules)
+                cost[i] = _compute_cost(occupied, target, path, count, x[i], rules)
                 failures[i] = 0
         for turn in range(2):
             if turn == 1:
-                onlooked = roulette(rng, 1.0 / (1.0 + cost), _SOURCES)
+                onlooked = draw_parents(rng, 1.0 / (1.0 + cost), _SOURCES)
             for bee in range(_SOURCES):
                 i = onlooked[bee] if turn == 1 else bee
-                other = integer(rng, 0, _SOURCES - 1)
+                other = draw_integer(rng, 0, _SOURCES - 1)
                 other += other >= i
-                k = integer(rng, 0, 2)
+                k = draw_integer(rng, 0, 2)
                 point[0], point[1] = x[i, 0], x[i, 1]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
                 point[k] = min(max(point[k], low[k]), high[k])
-                tried = _cost(occupied, target, path, count, point, rules)
+                tried = _compute_cost(occupied, target, path, count, point, rules)
                 if tried < cost[i]:
                     x[i, k] = point[k]
                     cost[i] = tried
@@ -203,7 +203,7 @@ def _draw(rng, low, high, point):
 
 
 @allocation_free
-def _cost(occupied, target, path, count, point, rules):
+def _compute_cost(occupied, target, path, count, point, rules):
     """Cost of the next point: the distance to it, the distance from it to the target, and cones
     over the cells around the points chosen before.
     """
@@ -213,20 +213,22 @@ def _cost(occupied, target, path, count, point, rules):
     height = 0.0
     column, row = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
     for chosen in range(1, count):
-        height += max(0.0, rules.reach - _length(path[chosen, 0], path[chosen, 1], column, row))
+        height += max(
+            0.0, rules.reach - _measure_leg(path[chosen, 0], path[chosen, 1], column, row)
+        )
     return (
-        _STEP_WEIGHT * _length(last[0], last[1], point[0], point[1])
-        + _length(point[0], point[1], target[0], target[1])
+        _STEP_WEIGHT * _measure_leg(last[0], last[1], point[0], point[1])
+        + _measure_leg(point[0], point[1], target[0], target[1])
         + rules.visited_weight * height
     )
 
 
 @allocation_free
-def _length(x0, y0, x1, y1):
+def _measure_leg(x0, y0, x1, y1):
     return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
 
 
-@compiled
+@compile_kernel
 def _cut_short(occupied, path):
     """A path without unnecessary points: each point is joined to the last one that it sees."""
     kept = np.zeros(len(path), dtype=np.int64)
@@ -247,7 +249,7 @@ def _cut_short(occupied, path):
 # Evolution
 
 
-@compiled
+@compile_kernel
 def _evolve(rng, occupied, path, rules):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations
     + 1,).
@@ -259,37 +261,37 @@ def _evolve(rng, occupied, path, rules):
     slots = np.arange(2 * population)
     for i in range(population):
         _copy(path, 0, len(path), points[i], 0)
-    cost = np.full(2 * population, _price(occupied, path))
+    cost = np.full(2 * population, _price_path(occupied, path))
     history = np.empty(generations + 1)
     history[0] = cost[0]
 
     for generation in range(generations):
         for i in range(population):
             parent, child = slots[i], slots[population + i]
-            counts[child] = _mutated(
+            counts[child] = _mutate(
                 rng, occupied, points[parent, : counts[parent]], points[child], rules.spread
             )
-            cost[child] = _price(occupied, points[child, : counts[child]])
-        _rank(slots, _wins(rng, cost), cost)
+            cost[child] = _price_path(occupied, points[child, : counts[child]])
+        _rank(slots, _count_wins(rng, cost), cost)
         history[generation + 1] = cost[slots[0]]
     return points[slots[0], : counts[slots[0]]], history
 
 
 @allocation_free
-def _mutated(rng, occupied, points, child, spread):
+def _mutate(rng, occupied, points, child, spread):
     """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is
     inserted. Returns the child's number of points.
     """
     kind, count = rng.random(), len(points)
     if count == 2 or kind >= _MOVE_SHARE + _REMOVAL_SHARE:
         # The child's new point; the parent's points after it move up by one.
-        changed = integer(rng, 1, count)
+        changed = draw_integer(rng, 1, count)
         kept, behind = changed, changed + 1
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
         _shift(rng, occupied, child[changed], spread * _INSERTION_SPREAD)
     else:
-        changed = integer(rng, 1, count - 1)
+        changed = draw_integer(rng, 1, count - 1)
         kept = behind = changed + 1
         if kind < _MOVE_SHARE:
             _copy(points, changed, kept, child, changed)
@@ -318,30 +320,30 @@ def _shift(rng, occupied, point, spread):
 
 
 @allocation_free
-def _price(occupied, points):
+def _price_path(occupied, points):
     """Length of a path (points, 2), plus the penalty for each leg that is blocked."""
     price = 0.0
     for p in range(len(points) - 1):
         x0, y0 = points[p, 0], points[p, 1]
         x1, y1 = points[p + 1, 0], points[p + 1, 1]
-        length = _length(x0, y0, x1, y1)
+        length = _measure_leg(x0, y0, x1, y1)
         price += length if is_free_leg(occupied, x0, y0, x1, y1) else length + _BLOCKED
     return price
 
 
-@compiled
-def _wins(rng, cost):
+@compile_kernel
+def _count_wins(rng, cost):
     """For each path (n,), the number of random opponents that it is not worse than."""
     wins = np.zeros(len(cost), dtype=np.int64)
     for i in range(len(cost)):
         for _ in range(_OPPONENTS):
-            other = integer(rng, 0, len(cost) - 1)
+            other = draw_integer(rng, 0, len(cost) - 1)
             other += other >= i
             wins[i] += cost[i] <= cost[other]
     return wins
 
 
-@compiled
+@compile_kernel
 def _rank(slots, wins, cost):
     """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses
     to none, so it comes first.

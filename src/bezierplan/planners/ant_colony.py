@@ -12,10 +12,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.cell_paths import length, places_of, plan_of, put, step_between
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.cell_paths import (
+    build_lattice,
+    measure_length,
+    plan_of,
+    put,
+    step_between,
+)
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
@@ -112,7 +118,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 28.
     """
-    places = places_of(problem, settings.corners)
+    places = build_lattice(problem, settings.corners)
     colony = search(places, rng, settings)
     evaluations = settings.ants * len(colony.history)
     return plan_of(problem, colony.best, colony.history, evaluations, "iterations")
@@ -128,11 +134,11 @@ def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony
     heuristic[places.target] = rules.target_heuristic
     if places.start == places.target:
         rules = rules._replace(iterations=1)
-    return Colony(*_colony(rng, places, heuristic**rules.heuristic_weight, rules))
+    return Colony(*_run_colony(rng, places, heuristic**rules.heuristic_weight, rules))
 
 
-@compiled
-def _colony(rng, lattice, heuristic, rules):
+@compile_kernel
+def _run_colony(rng, lattice, heuristic, rules):
     """Best path, history, and the last iteration's paths with their sizes, as in `Colony`.
     heuristic: (cells,), with its weight applied.
     """
@@ -157,7 +163,7 @@ def _colony(rng, lattice, heuristic, rules):
                 iteration * rules.ants + ant,
             )
             if sizes[ant]:
-                walked = length(paths[ant, : sizes[ant]], lattice)
+                walked = measure_length(paths[ant, : sizes[ant]], lattice)
                 if walked < best_length:
                     best_size, best_length = put(paths[ant, : sizes[ant]], best, 0), walked
         history[iteration] = best_length
@@ -180,13 +186,13 @@ def _colony(rng, lattice, heuristic, rules):
                     trail[cell, step] *= 1.0 - rules.evaporation
             for ant in range(rules.ants):
                 if sizes[ant]:
-                    amount = rules.deposit / length(paths[ant, : sizes[ant]], lattice)
+                    amount = rules.deposit / measure_length(paths[ant, : sizes[ant]], lattice)
                     for k in range(1, sizes[ant]):
                         _lay(lattice, trail, paths[ant, k - 1], paths[ant, k], 1.0, amount)
     return best[:best_size], history, paths, sizes
 
 
-@compiled
+@compile_kernel
 def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
     """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,)
     the number of the last ant that visited each cell.
@@ -238,7 +244,7 @@ def _choose(rng, attraction, exploitation):
         return np.argmax(attraction)
     total = attraction.sum()
     if total == 0:
-        return integer(rng, 0, len(attraction))
+        return draw_integer(rng, 0, len(attraction))
     draw = rng.random() * total
     for k in range(len(attraction) - 1):
         draw -= attraction[k]

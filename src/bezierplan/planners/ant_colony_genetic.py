@@ -76,7 +76,7 @@ def plan(
     ----------
     ma2020, Section 4.1, reference 30.
     """
-    places = cell_paths.places_of(problem, ants.corners)
+    places = cell_paths.build_lattice(problem, ants.corners)
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
@@ -91,7 +91,7 @@ def plan(
         best, later = cell_paths.evolve(
             moves,
             places,
-            *_first_population(colony, settings.population),
+            *_choose_first_population(colony, settings.population),
             settings.generations,
             rules,
         )
@@ -101,7 +101,9 @@ def plan(
     return cell_paths.plan_of(problem, best, history, evaluations, "generations")
 
 
-def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:
+def _choose_first_population(
+    colony: ant_colony.Colony, population: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Paths (population, cells) and their sizes (population,)."""
     paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
     sizes = np.full(population, len(colony.best))

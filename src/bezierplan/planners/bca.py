@@ -15,7 +15,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
     breed,
@@ -23,12 +23,12 @@ from bezierplan.planners.parts.genetic import (
     check_pairs,
     copy,
     flip_bit,
+    is_same,
     redraw_gene,
-    same,
 )
-from bezierplan.planners.parts.penalised import basis
-from bezierplan.planners.parts.random_integers import integer
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.penalised import compute_basis
+from bezierplan.planners.parts.random_integers import draw_integer
+from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -178,10 +178,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
         settings = settings._replace(population=1, generations=0)
-    rules = in_cells(settings, grid.cell)
+    rules = convert_to_cells(settings, grid.cell)
     curve = CurveKind(settings.curve).name
-    cells = _cells(grid, math.ceil(rules.safety_distance))
-    sampled = _sampled(problem, curve, settings.control_points, settings.samples)
+    cells = _prepare_cells(grid, math.ceil(rules.safety_distance))
+    sampled = _sample_curve(problem, curve, settings.control_points, settings.samples)
     starts, moves = rng.spawn(2)
     codes = cells.free[
         starts.integers(0, len(cells.free), size=(settings.population, settings.control_points))
@@ -204,7 +204,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         stop="generations",
         extra={
             "bad_samples": int(bad),
-            "safety_term": _safety_term(bad, clearance, rules.safety_distance),
+            "safety_term": _compute_safety_term(bad, clearance, rules.safety_distance),
         },
     )
 
@@ -238,7 +238,7 @@ class _Curve(NamedTuple):
     cell: float
 
 
-def code_centres(rows: int, columns: int) -> np.ndarray:
+def list_code_centres(rows: int, columns: int) -> np.ndarray:
     """Centres (cells, 2) of the cells by code, in cells: numbered row by row from the top left,
     from 0 (ma2020, eqs. 10 and 11, which number from 1).
     """
@@ -246,7 +246,7 @@ def code_centres(rows: int, columns: int) -> np.ndarray:
     return np.column_stack([along + 0.5, rows - down - 0.5])
 
 
-def _cells(grid: Grid, reach: int) -> _Cells:
+def _prepare_cells(grid: Grid, reach: int) -> _Cells:
     """The grid for the kernels; near: the occupied cells at most `reach` columns and rows away."""
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
@@ -263,7 +263,7 @@ def _cells(grid: Grid, reach: int) -> _Cells:
     at = columns * row + column
     return _Cells(
         grid.occupied,
-        code_centres(rows, columns),
+        list_code_centres(rows, columns),
         legal,
         free,
         near,
@@ -271,8 +271,8 @@ def _cells(grid: Grid, reach: int) -> _Cells:
     )
 
 
-def _sampled(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
-    ends, free = basis(curve, control_points, samples)
+def _sample_curve(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
+    ends, free = compute_basis(curve, control_points, samples)
     grid = problem.workspace
     straight = math.dist(problem.start, problem.target) / grid.cell
     return _Curve(
@@ -280,7 +280,7 @@ def _sampled(problem: Problem, curve: str, control_points: int, samples: int) ->
     )
 
 
-@compiled
+@compile_kernel
 def _search(rng, codes, cells, curve, rules):
     """The best chromosome (control points,), and the lowest cost so far (generations + 1,).
 
@@ -300,12 +300,12 @@ def _search(rng, codes, cells, curve, rules):
         for i in range(population):
             # A child equal to one of its parents takes over its cost, which changes no result.
             mother, father = draws[i - i % 2], draws[min(i | 1, population - 1)]
-            if generation > 0 and same(codes[i], parents[mother]):
+            if generation > 0 and is_same(codes[i], parents[mother]):
                 cost[i] = parent_cost[mother]
-            elif generation > 0 and same(codes[i], parents[father]):
+            elif generation > 0 and is_same(codes[i], parents[father]):
                 cost[i] = parent_cost[father]
             else:
-                cost[i] = _cost(codes[i], cells, curve, rules, scratch)
+                cost[i] = _compute_cost(codes[i], cells, curve, rules, scratch)
             if cost[i] < best_cost:
                 copy(codes[i], best)
                 best_cost = cost[i]
@@ -323,7 +323,7 @@ def _search(rng, codes, cells, curve, rules):
     return best, history
 
 
-@compiled
+@compile_kernel
 def _redraw(rng, codes, cells, curve):
     """Redraw every chromosome, in place, until its curve is collision-free."""
     scratch = np.empty((3, curve.ends.shape[1]))
@@ -332,7 +332,7 @@ def _redraw(rng, codes, cells, curve):
             if _measure(codes[i], cells, curve, scratch, False)[1] == 0:
                 break
             for gene in range(codes.shape[1]):
-                codes[i, gene] = cells.free[integer(rng, 0, len(cells.free))]
+                codes[i, gene] = cells.free[draw_integer(rng, 0, len(cells.free))]
 
 
 @allocation_free
@@ -344,13 +344,13 @@ def _mutate(rng, genes, bits, cells, rules):
                 flip_bit(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
         if rules.mutation == Mutation.bit_flip:
-            flip_bit(rng, genes, integer(rng, 0, len(genes)), bits, cells.legal)
+            flip_bit(rng, genes, draw_integer(rng, 0, len(genes)), bits, cells.legal)
         else:
             redraw_gene(rng, genes, cells.free)
 
 
 @allocation_free
-def _cost(genes, cells, curve, rules, scratch):
+def _compute_cost(genes, cells, curve, rules, scratch):
     """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
     priced = length * (
@@ -358,7 +358,7 @@ def _cost(genes, cells, curve, rules, scratch):
     ) + rules.collision_surcharge * (bad > 0)
     if rules.fitness == Fitness.length:
         return priced * curve.cell
-    safety = _safety_term(bad, clearance, rules.safety_distance)
+    safety = _compute_safety_term(bad, clearance, rules.safety_distance)
     if rules.fitness == Fitness.repaired:
         return rules.length_weight * priced / curve.straight + rules.safety_weight * safety
     if rules.fitness == Fitness.literal_weights:
@@ -377,7 +377,7 @@ def _cost(genes, cells, curve, rules, scratch):
 
 
 @allocation_free
-def _safety_term(bad, clearance, safety_distance):
+def _compute_safety_term(bad, clearance, safety_distance):
     """How far the path undercuts the safety distance: 0 to 1 (ma2020, eq. 14; 1 if it collides)."""
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
@@ -409,12 +409,12 @@ def _measure(genes, cells, curve, scratch, with_clearance):
     length = 0.0
     for s in range(samples - 1):
         length += chords[s]
-    bad = collisions(x, y, cells.occupied)
-    return length, bad, _clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
+    bad = count_collisions(x, y, cells.occupied)
+    return length, bad, _measure_clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
 
 
 @allocation_free
-def collisions(x, y, occupied):
+def count_collisions(x, y, occupied):
     """Number of samples that lie inside an occupied cell or end a chord that passes through one
     between its ends. Touching is allowed.
     """
@@ -424,21 +424,21 @@ def collisions(x, y, occupied):
     for s in range(len(x)):
         last_column, last_row = column, row
         column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
-        if occupied[row, column] and _inside(x[s], column) and _inside(y[s], row):
+        if occupied[row, column] and _is_inside(x[s], column) and _is_inside(y[s], row):
             bad += 1
         elif abs(column - last_column) + abs(row - last_row) > 1:
-            bad += _cuts(x[s - 1], y[s - 1], x[s], y[s], occupied)
+            bad += _cuts_obstacle(x[s - 1], y[s - 1], x[s], y[s], occupied)
     return bad
 
 
 @allocation_free
-def _inside(value, cell):
+def _is_inside(value, cell):
     """Whether a coordinate is between the grid lines of its cell; rounding must not decide."""
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
 @allocation_free
-def _cuts(x, y, x_end, y_end, occupied):
+def _cuts_obstacle(x, y, x_end, y_end, occupied):
     """Whether a chord passes through an occupied cell between the cells of its ends.
 
     The chord is divided so that no part crosses two grid lines of the same kind; a part that
@@ -454,8 +454,8 @@ def _cuts(x, y, x_end, y_end, occupied):
         if (
             part < parts
             and occupied[next_row, next_column]
-            and _inside(next_x, next_column)
-            and _inside(next_y, next_row)
+            and _is_inside(next_x, next_column)
+            and _is_inside(next_y, next_row)
         ):
             return True
         if column != next_column and row != next_row:
@@ -470,7 +470,7 @@ def _cuts(x, y, x_end, y_end, occupied):
 
 
 @allocation_free
-def _clearance(x, y, cells):
+def _measure_clearance(x, y, cells):
     """Minimum distance in cells of samples to the occupied cells near theirs, or infinite."""
     rows, columns = cells.occupied.shape
     least = np.inf

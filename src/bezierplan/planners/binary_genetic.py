@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
     breed,
@@ -25,10 +25,10 @@ from bezierplan.planners.parts.genetic import (
     check_pairs,
     complement_bit,
     copy,
-    same,
+    is_same,
 )
-from bezierplan.planners.parts.random_integers import integer
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.random_integers import draw_integer
+from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -177,20 +177,20 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         basis=np.ascontiguousarray(basis.T),
         stretches=np.array([[0, settings.genes + 1, 0, settings.samples - 1]])
         if by_arc_length
-        else stretches(basis),
+        else find_stretches(basis),
         by_arc_length=by_arc_length,
     )
     best, best_bad, history = _search(
-        moves, cells, occupied, places, measured, in_cells(settings, grid.cell)
+        moves, cells, occupied, places, measured, convert_to_cells(settings, grid.cell)
     )
     points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
     path = Path(curve, points)
-    rest = distinct(points, settings.rejection == Rejection.consecutive)
+    rest = drop_repeated_points(points, settings.rejection == Rejection.consecutive)
     if settings.rejection != Rejection.none and len(rest) < len(points):
         # Too few points for pieces of this degree define one piece of a lower degree.
         shorter = Path(curve if len(rest) >= curves.least_points(curve) else "bezier", rest)
-        bad = _bad_samples(shorter, grid, occupied, settings.samples)
+        bad = _count_bad_samples(shorter, grid, occupied, settings.samples)
         if bad <= best_bad or settings.rejection != Rejection.harmless:
             path, best_bad = shorter, bad
     return Plan(
@@ -204,7 +204,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-def distinct(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
+def drop_repeated_points(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
     """Return the control points (m, 2) of (n, 2) that coincide with no other (song2016, Remark 3).
 
     Start and target stay, and the first of several free ones. consecutive: whether only points
@@ -225,14 +225,14 @@ def distinct(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
     return np.array([start, *rest, target])
 
 
-def _bad_samples(path: Path, grid: Grid, occupied: np.ndarray, samples: int) -> int:
+def _count_bad_samples(path: Path, grid: Grid, occupied: np.ndarray, samples: int) -> int:
     """Return the number of samples of a path that lie in occupied cells."""
     basis = curves.sample_matrix(path.curve, len(path.points), samples)
     column, row = np.floor(grid.in_cells(basis @ path.points) + ON_LINE).astype(int).T
     return int(occupied[row, column].sum())
 
 
-def stretches(basis: np.ndarray) -> np.ndarray:
+def find_stretches(basis: np.ndarray) -> np.ndarray:
     """Runs of chords between samples whose two ends depend on the same control points.
 
     basis: (samples, control points), the curve's linear map. Returns (stretches, 4): first and last
@@ -248,7 +248,7 @@ def stretches(basis: np.ndarray) -> np.ndarray:
 
 class _Curve(NamedTuple):
     """How chromosomes are measured. basis: (control points, samples), the curve's linear map;
-    stretches: those of `stretches`.
+    stretches: those of `find_stretches`.
     """
 
     basis: np.ndarray
@@ -256,7 +256,7 @@ class _Curve(NamedTuple):
     by_arc_length: bool
 
 
-@compiled
+@compile_kernel
 def _search(rng, cells, occupied, places, curve, rules):
     """Cells (control points,) of the best chromosome, the number of its samples in occupied cells,
     and the best objective so far, or of each generation (generations + 1,).
@@ -296,10 +296,10 @@ def _search(rng, cells, occupied, places, curve, rules):
             length, count, visits = 0.0, 0, 0
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1] + 1
-                if same(cells[i, first:last], parents[mother, first:last]):
+                if is_same(cells[i, first:last], parents[mother, first:last]):
                     lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
                     entries[i, k] = parent_entries[mother, k]
-                elif same(cells[i, first:last], parents[father, first:last]):
+                elif is_same(cells[i, first:last], parents[father, first:last]):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
                     entries[i, k] = parent_entries[father, k]
                 elif curve.by_arc_length:
@@ -320,7 +320,9 @@ def _search(rng, cells, occupied, places, curve, rules):
                 length += lengths[i, k]
                 count += bad[i, k]
                 visits += entries[i, k]
-                objective[i] = length + rules.penalty * _penalties(count, visits, rules.penalty_for)
+                objective[i] = length + rules.penalty * _count_penalties(
+                    count, visits, rules.penalty_for
+                )
                 # No other stretch makes it smaller, and only parents need to be measured in full.
                 if generation == rules.generations and objective[i] >= best_objective:
                     break
@@ -348,7 +350,7 @@ def _search(rng, cells, occupied, places, curve, rules):
 
 
 @allocation_free
-def _penalties(bad, entries, penalty_for):
+def _count_penalties(bad, entries, penalty_for):
     """How often the penalty is added for so many samples in occupied cells and so many entries into
     them (song2016, eq. 9).
     """
@@ -364,11 +366,11 @@ def _mutate(rng, genes, bits, probability, mutation):
     """Complement random bits of a chromosome in place (song2016, Section III-E: `one_bit`)."""
     if mutation == Mutation.one_bit:
         if rng.random() < probability:
-            complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)
+            complement_bit(genes, draw_integer(rng, 0, bits * len(genes)), bits)
     elif mutation == Mutation.each_gene:
         for gene in range(len(genes)):
             if rng.random() < probability:
-                complement_bit(genes, gene * bits + integer(rng, 0, bits), bits)
+                complement_bit(genes, gene * bits + draw_integer(rng, 0, bits), bits)
     else:
         for position in range(bits * len(genes)):
             if rng.random() < probability:
@@ -412,7 +414,7 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_ent
     return length, bad, entries
 
 
-@compiled
+@compile_kernel
 def _measure_by_arc_length(cells, occupied, places, samples):
     """Length in cells of a polyline, the number of samples, equally spaced along it, that lie in
     occupied cells, and how often they enter one.

@@ -19,12 +19,12 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
-from bezierplan.planners.parts.settings import UNITS, filled, with_settings
+from bezierplan.planners.parts.settings import UNITS, fill_settings, with_settings
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
@@ -224,7 +224,7 @@ def plan(
     evaluations = (1 if settings.control_points == 0 else settings.particles) * (done + 1)
     feasible = swarm.violation <= FEASIBLE
     return Plan(
-        path=Path(curve, _points(swarm.positions[-1], curve, problem)),
+        path=Path(curve, _place_points(swarm.positions[-1], curve, problem)),
         objective=swarm.fitness[-1],
         claimed_feasible=feasible,
         evaluations=evaluations,
@@ -251,8 +251,8 @@ def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.nda
     iteration of the run that `plan` makes with the same generator and settings, in units
     (tharwat2018, Figure 12).
     """
-    positions = search(problem, rng, filled(Settings, settings)).positions
-    return np.array([_points(position, settings["curve"], problem) for position in positions])
+    positions = search(problem, rng, fill_settings(Settings, settings)).positions
+    return np.array([_place_points(position, settings["curve"], problem) for position in positions])
 
 
 def search(
@@ -267,7 +267,7 @@ def search(
     )
     if dimensions == 0:
         particles, iterations = 1, 0
-    objective = _objective(problem, settings)
+    objective = _build_objective(problem, settings)
     low, high = np.repeat(
         np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1
     )
@@ -280,9 +280,9 @@ def search(
         )
         shares[0] = known
     x = low + (high - low) * shares
-    zeta, clips, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
+    zeta, clips, collapsed_at = _draw_zeta(chaos, (iterations, particles, dimensions), settings)
     return Swarm(
-        *_swarm(
+        *_run_swarm(
             moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, settings
         ),
         clips,
@@ -290,30 +290,30 @@ def search(
     )
 
 
-def _objective(problem: Problem, settings: Settings) -> Objective:
-    ends, free = penalised.basis(
+def _build_objective(problem: Problem, settings: Settings) -> Objective:
+    ends, free = penalised.compute_basis(
         Curve(settings.curve).name, settings.control_points, settings.samples
     )
     return Objective(
         ends=np.array([problem.start, problem.target]).T @ ends,
         free=free,
         balls=penalised.round_obstacles(problem.workspace, settings.d_min),
-        polygons=penalised.polygonal_obstacles(problem.workspace, settings.d_min),
+        polygons=penalised.grow_polygons(problem.workspace, settings.d_min),
         penalty=settings.penalty,
         beta=settings.beta,
     )
 
 
-def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
+def _place_points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
     """Control points (n + 2, 2) of a particle (2 n,)."""
     n = len(position) // 2
     points = np.empty((n + 2, 2))
     points[list(curves.ends(curve))] = problem.start, problem.target
-    points[penalised.free(curve, n)] = position.reshape(2, n).T
+    points[penalised.find_free_points(curve, n)] = position.reshape(2, n).T
     return points
 
 
-def _zeta(
+def _draw_zeta(
     chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings
 ) -> chaotic_maps.Sequence:
     """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the
@@ -326,16 +326,16 @@ def _zeta(
     name = chaotic_maps.Map(settings.chaotic_map).name
     start = settings.chaotic_start
     if settings.chaotic_start_rule == StartRule.random:
-        start = chaotic_maps.random_start(chaos, name, settings.singer_mu)
+        start = chaotic_maps.draw_start(chaos, name, settings.singer_mu)
     elif settings.chaotic_start_rule == StartRule.uniform:
         start = chaos.random()
-    found = chaotic_maps.sequence(name, start, math.prod(shape), settings.singer_mu)
+    found = chaotic_maps.compute_sequence(name, start, math.prod(shape), settings.singer_mu)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clips, collapsed_in)
 
 
-@compiled
-def _swarm(rng, x, zeta, low, high, limit, objective, rules):
+@compile_kernel
+def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
     """Algorithm 1 of tharwat2018; returns the first fields of a `Swarm`.
 
     x: (particles, dimensions), the initial positions; moved in place. zeta: (iterations, particles
@@ -361,16 +361,16 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         for i in range(particles):
             penalised.write_curve(x[i], objective, curve)
             if rules.tested == Tested.samples:
-                violation, colliding = penalised.violation(curve, objective, scratch)
+                violation, colliding = penalised.measure_violation(curve, objective, scratch)
             else:
-                violation, colliding = _violation_of_points(x[i], objective, scratch)
+                violation, colliding = _measure_violation_of_points(x[i], objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             # Most paths are too long to be a best one, which a few chords tell.
-            fitness = penalised.fitness(penalised.least_length(curve), violation, objective)
+            fitness = penalised.compute_fitness(penalised.bound_length(curve), violation, objective)
             if fitness < p_fitness[i]:
-                length = penalised.length(curve, scratch)
-                fitness = penalised.fitness(length, violation, objective)
+                length = penalised.measure_length(curve, scratch)
+                fitness = penalised.compute_fitness(length, violation, objective)
             if fitness < p_fitness[i]:
                 copy(x[i], p[i])
                 p_fitness[i] = fitness
@@ -404,10 +404,12 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     )
 
 
-@compiled
-def _violation_of_points(particle, objective, scratch):
-    """`penalised.violation` of a particle's control points instead of samples of its curve."""
-    return penalised.violation(particle.reshape((2, len(particle) // 2)), objective, scratch)
+@compile_kernel
+def _measure_violation_of_points(particle, objective, scratch):
+    """Return `penalised.measure_violation` of a particle's control points, not of its samples."""
+    return penalised.measure_violation(
+        particle.reshape((2, len(particle) // 2)), objective, scratch
+    )
 
 
 @allocation_free

@@ -14,14 +14,14 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.bca import collisions
+from bezierplan.planners.bca import count_collisions
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.genetic import check_curve, copy
 from bezierplan.planners.parts.penalised import FEASIBLE
-from bezierplan.planners.parts.random_integers import integer
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.random_integers import draw_integer
+from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -97,15 +97,17 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     world = problem.workspace
     cells = isinstance(world, Grid)
     origin, cell = (np.array(world.origin), world.cell) if cells else (np.zeros(2), 1.0)
-    rules = in_cells(settings, cell)
+    rules = convert_to_cells(settings, cell)
     ends = (np.array([problem.start, problem.target]) - origin) / cell
     low, high = (np.reshape(world.bounds, (2, 2)).T - origin) / cell
-    of_ends, of_free = penalised.basis(Curve(rules.curve).name, rules.control_points, rules.samples)
+    of_ends, of_free = penalised.compute_basis(
+        Curve(rules.curve).name, rules.control_points, rules.samples
+    )
     objective = penalised.Objective(
         ends=ends.T @ of_ends,
         free=of_free,
         balls=np.empty((0, 3)) if cells else penalised.round_obstacles(world, 0.0),
-        polygons=penalised.polygonal_obstacles(world, 0.0),
+        polygons=penalised.grow_polygons(world, 0.0),
         penalty=int(penalised.Penalty.multiply),
         beta=rules.factor,
     )
@@ -127,7 +129,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-@compiled
+@compile_kernel
 def _evolve(rng, x, low, high, objective, occupied, rules):
     """DE/rand/1/bin: the best vector (2 n,), the lowest cost after each generation (generations +
     1,), and the best vector's violation.
@@ -142,19 +144,19 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
     cost, violation, trials = np.empty(population), np.empty(population), np.empty_like(x)
     history = np.empty(rules.generations + 1)
     for i in range(population):
-        cost[i], violation[i] = _cost(x[i], objective, occupied, rules, scratch)
+        cost[i], violation[i] = _compute_cost(x[i], objective, occupied, rules, scratch)
     history[0] = cost.min()
     for generation in range(1, rules.generations + 1):
         for i in range(population):
-            a, b, c = _three_others(rng, i, population)
-            forced = integer(rng, 0, dimensions)
+            a, b, c = _draw_three_others(rng, i, population)
+            forced = draw_integer(rng, 0, dimensions)
             for k in range(dimensions):
                 trials[i, k] = x[i, k]
                 if rng.random() < rules.crossover or k == forced:
                     mutant = x[a, k] + rules.weight * (x[b, k] - x[c, k])
                     trials[i, k] = min(max(mutant, low[k]), high[k])
         for i in range(population):
-            value, violated = _cost(trials[i], objective, occupied, rules, scratch)
+            value, violated = _compute_cost(trials[i], objective, occupied, rules, scratch)
             if value <= cost[i]:
                 copy(trials[i], x[i])
                 cost[i], violation[i] = value, violated
@@ -164,36 +166,36 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
 
 
 @allocation_free
-def _three_others(rng, i, population):
+def _draw_three_others(rng, i, population):
     """Three different vectors, none of which is i."""
     a = b = c = i
     while a == i:
-        a = integer(rng, 0, population)
+        a = draw_integer(rng, 0, population)
     while b in (i, a):
-        b = integer(rng, 0, population)
+        b = draw_integer(rng, 0, population)
     while c in (i, a, b):
-        c = integer(rng, 0, population)
+        c = draw_integer(rng, 0, population)
     return a, b, c
 
 
 @allocation_free
-def _cost(vector, objective, occupied, rules, scratch):
+def _compute_cost(vector, objective, occupied, rules, scratch):
     """Length with what its violation adds, and the violation."""
     curve, chords = scratch
     penalised.write_curve(vector, objective, curve)
-    length = penalised.length(curve, chords)
+    length = penalised.measure_length(curve, chords)
     if len(occupied) == 0:
-        violation = penalised.violation(curve, objective, chords)[0]
+        violation = penalised.measure_violation(curve, objective, chords)[0]
     elif rules.collision == Collision.samples:
-        violation = float(_in_occupied_cells(curve, occupied))
+        violation = float(_count_samples_in_occupied_cells(curve, occupied))
     else:
-        violation = collisions(curve[0], curve[1], occupied) / curve.shape[1]
+        violation = count_collisions(curve[0], curve[1], occupied) / curve.shape[1]
     cost = length * (1.0 + rules.factor * violation) + rules.collision_penalty * violation
     return cost + (rules.surcharge if violation > FEASIBLE else 0.0), violation
 
 
 @allocation_free
-def _in_occupied_cells(curve, occupied):
+def _count_samples_in_occupied_cells(curve, occupied):
     """Number of samples (2, samples) after the first in occupied cells (song2016, eq. 9)."""
     rows, columns = occupied.shape
     bad = 0

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
@@ -86,14 +86,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 31.
     """
-    places = cell_paths.places_of(problem, settings.corners)
+    places = cell_paths.build_lattice(problem, settings.corners)
     first, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: all fish have arrived.
         settings = settings._replace(generations=0)
         paths, sizes, releases = np.array([[places.start]]), np.array([1]), 1
     else:
-        paths, sizes, releases = _release(first, places, settings)
+        paths, sizes, releases = _place_first_paths(first, places, settings)
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
     if len(sizes) > 0:
         rules = cell_paths.Rules(
@@ -115,8 +115,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 
-@compiled
-def _release(rng, lattice, swarm):
+@compile_kernel
+def _place_first_paths(rng, lattice, swarm):
     """The first paths (n, longest path) of fish that arrive, at most a population, their sizes
     (n,), and the number of releases.
     """
@@ -145,7 +145,7 @@ def _release(rng, lattice, swarm):
                 if step % _FOLLOW_EVERY == 0:
                     cell = _follow(lattice, i, cells, states, visited[i], swarm)
                 if cell < 0:
-                    cell = cell_paths.forage(
+                    cell = cell_paths.choose_cell_for_prey(
                         rng, lattice, cells[i], lattice.target, swarm.tries, visited[i]
                     )
                 if cell < 0 or sizes[i] == _LONGEST_PATH:
@@ -172,22 +172,26 @@ def _follow(lattice, i, cells, states, visited, swarm):
     There is also none if the leader is no nearer to the target than the fish itself, or if too many
     fish are in sight.
     """
-    in_sight, leader, near = 0, -1, cell_paths.distance_square(lattice, cells[i], lattice.target)
+    in_sight, leader, near = (
+        0,
+        -1,
+        cell_paths.compute_distance_square(lattice, cells[i], lattice.target),
+    )
     for j in range(swarm.fish):
         if (
             j != i
             and states[j] != _DEAD
-            and cell_paths.distance_square(lattice, cells[i], cells[j]) <= _SIGHT**2
+            and cell_paths.compute_distance_square(lattice, cells[i], cells[j]) <= _SIGHT**2
         ):
             in_sight += 1
-            distance = cell_paths.distance_square(lattice, cells[j], lattice.target)
+            distance = cell_paths.compute_distance_square(lattice, cells[j], lattice.target)
             if distance < near:
                 leader, near = cells[j], distance
     chosen = -1
     if leader >= 0 and in_sight < _CROWDING * swarm.fish:
         for cell in lattice.neighbours[cells[i]]:
             if cell >= 0 and not visited[cell]:
-                distance = cell_paths.distance_square(lattice, cell, leader)
+                distance = cell_paths.compute_distance_square(lattice, cell, leader)
                 if chosen < 0 or distance < near:
                     chosen, near = cell, distance
     return chosen

@@ -16,11 +16,11 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.cell_paths import put
-from bezierplan.planners.parts.genetic import roulette
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.genetic import draw_parents
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
@@ -93,7 +93,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     row, column = np.divmod(cells, walls.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(
-        path=Path("polyline", _through(problem, centres[_turns(column, row)])),
+        path=Path("polyline", _join_through_centres(problem, centres[_is_turn(column, row)])),
         objective=history[-1],
         claimed_feasible=True,
         evaluations=settings.population * len(history),
@@ -103,14 +103,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
+def _is_turn(column: np.ndarray, row: np.ndarray) -> np.ndarray:
     """Whether (n,) a cell of a path is its first, its last, or one where the direction changes."""
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
     return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
-def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
+def _join_through_centres(problem: Problem, centres: np.ndarray) -> np.ndarray:
     """Points from start to target, which lie in the first and last cell, through cells' centres."""
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
@@ -137,7 +137,7 @@ class _Walker(NamedTuple):
     last_visit: np.ndarray
 
 
-@compiled
+@compile_kernel
 def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
     """Return the cells (n,) of the cheapest path, none if there is no way, and the lowest cost so
     far (generations + 1,).
@@ -151,15 +151,15 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
     walk = np.empty(3 * size, dtype=np.int64)
     index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
-    paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk)
+    paths, costs = _draw_first_walks(walks_rng, walker, start, target, rules, walk)
     if len(paths) == 0:
         return np.empty(0, dtype=np.int64), np.full(1, np.inf)
-    paths, costs = _best(paths, costs, population)
+    paths, costs = _select_best(paths, costs, population)
     history = np.empty(rules.generations + 1)
     history[0] = costs[0]
 
     for generation in range(rules.generations):
-        drawn = roulette(moves_rng, 1.0 / costs[:population], 2 * population)
+        drawn = draw_parents(moves_rng, 1.0 / costs[:population], 2 * population)
         for i in range(population):
             head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
             count = 0
@@ -171,14 +171,14 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
             if moves_rng.random() < rules.mutation_probability and count > 1:
                 count = _walk_anew(moves_rng, walker, walk, count)
             paths.append(walk[:count].copy())
-            costs[population + i] = _cost(walk, count, columns, rules.diagonal_cost)
-        paths, costs = _best(paths, costs, population)
+            costs[population + i] = _measure_path(walk, count, columns, rules.diagonal_cost)
+        paths, costs = _select_best(paths, costs, population)
         history[generation + 1] = costs[0]
     return paths[0], history
 
 
-@compiled
-def _best(paths, costs, population):
+@compile_kernel
+def _select_best(paths, costs, population):
     """The cheapest paths in ascending order of cost, ties in their original order; and their costs
     (2 population,), with room for children.
     """
@@ -189,8 +189,8 @@ def _best(paths, costs, population):
     return [paths[order[k]] for k in range(population)], best
 
 
-@compiled
-def _first_walks(rng, walker, start, target, rules, walk):
+@compile_kernel
+def _draw_first_walks(rng, walker, start, target, rules, walk):
     """Return `population` paths, and their costs (2 population,): the first one directly to the
     target, the others through a free cell that can be reached; none if the target cannot.
     """
@@ -200,15 +200,15 @@ def _first_walks(rng, walker, start, target, rules, walk):
     while len(paths) < rules.population:
         walk[0], count = start, 1
         if len(paths) > 0:
-            way = integer(rng, 0, len(walker.walls))
+            way = draw_integer(rng, 0, len(walker.walls))
             while walker.walls[way]:
-                way = integer(rng, 0, len(walker.walls))
+                way = draw_integer(rng, 0, len(walker.walls))
             count = _extend(rng, walker, walk, 1, way)
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
         if count > 0:
             count = _cut_loops(walk, count, walker.last_visit)
-            costs[len(paths)] = _cost(walk, count, walker.columns, rules.diagonal_cost)
+            costs[len(paths)] = _measure_path(walk, count, walker.columns, rules.diagonal_cost)
             paths.append(walk[:count].copy())
         elif len(paths) == 0:
             break
@@ -235,7 +235,7 @@ def _extend(rng, walker, walk, count, goal):
                 continue
             seen += 1
             away = (row - _ROW_STEPS[k]) ** 2 + (column - _COLUMN_STEPS[k]) ** 2
-            if (integer(rng, 0, seen) == 0) if random else (away < best):
+            if (draw_integer(rng, 0, seen) == 0) if random else (away < best):
                 best, chosen = away, other
         if chosen < 0:
             count -= 1
@@ -278,7 +278,7 @@ def _join(rng, head, tail, index, common, walk):
             shared += 1
     count = 0
     if shared > 0:
-        cut = common[integer(rng, 0, shared)]
+        cut = common[draw_integer(rng, 0, shared)]
         count = put(head[: index[tail[cut]]], walk, 0)
         count = put(tail[cut:], walk, count)
     for k in range(1, len(head) - 1):
@@ -291,8 +291,8 @@ def _walk_anew(rng, walker, path, count):
     """Replace the section between two random cells of a path by a new walk, in place; returns the
     new number of cells.
     """
-    one = integer(rng, 0, count)
-    other = integer(rng, 0, count - 1)
+    one = draw_integer(rng, 0, count)
+    other = draw_integer(rng, 0, count - 1)
     other += other >= one
     first, last = min(one, other), max(one, other)
     # The new walk is written after the path, followed by the path's tail; then both are moved
@@ -304,7 +304,7 @@ def _walk_anew(rng, walker, path, count):
 
 
 @allocation_free
-def _cost(path, count, columns, diagonal_cost):
+def _measure_path(path, count, columns, diagonal_cost):
     """Cost of a path of `count` cells."""
     diagonal = 0
     for k in range(count - 1):

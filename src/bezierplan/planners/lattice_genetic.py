@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import (
@@ -23,7 +23,7 @@ from bezierplan.planners.parts.genetic import (
     flip_bit,
     redraw_gene,
 )
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
@@ -102,7 +102,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 29.
     """
-    places = cell_paths.places_of(problem, settings.corners)
+    places = cell_paths.build_lattice(problem, settings.corners)
     starts, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: one chromosome without genes.
@@ -118,7 +118,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
         best, history = _search(moves, places, free, cells, settings)
     else:
-        paths, sizes = _first_paths(starts, places, population, settings.longest_join)
+        paths, sizes = _draw_first_paths(starts, places, population, settings.longest_join)
         best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
         if sizes.all():
             rules = cell_paths.Rules(
@@ -135,7 +135,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     return cell_paths.plan_of(problem, best, history, population * len(history), "generations")
 
 
-@compiled
+@compile_kernel
 def _search(rng, lattice, free, cells, rules):
     """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so
     far (generations + 1,).
@@ -156,7 +156,7 @@ def _search(rng, lattice, free, cells, rules):
     for generation in range(rules.generations + 1):
         for i in range(population):
             size = cell_paths.join(lattice, cells[i], path, marks)
-            lengths[i] = cell_paths.length(path[:size], lattice) if size else _UNDECODABLE
+            lengths[i] = cell_paths.measure_length(path[:size], lattice) if size else _UNDECODABLE
             if size and lengths[i] < best_length:
                 cell_paths.put(cells[i], best, 0)
                 best_path, best_length = path[:size].copy(), lengths[i]
@@ -181,12 +181,12 @@ def _mutate(rng, genes, bits, free, legal, mutation):
     legal: bool (2**bits,), whether a number is that of a free cell.
     """
     if mutation == Mutation.bit_flip:
-        flip_bit(rng, genes, integer(rng, 0, len(genes)), bits, legal)
+        flip_bit(rng, genes, draw_integer(rng, 0, len(genes)), bits, legal)
     else:
         redraw_gene(rng, genes, free)
 
 
-def _first_paths(
+def _draw_first_paths(
     rng: np.random.Generator, places: Lattice, population: int, longest: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Paths (population, longest) from start to target through a random free cell of each row
@@ -208,7 +208,7 @@ def _first_paths(
     return paths, sizes
 
 
-@compiled
+@compile_kernel
 def _join_rows(rng, lattice, free, ends, paths, sizes):
     """Fill in paths and their sizes, in place, until one cannot be found.
 
@@ -221,7 +221,7 @@ def _join_rows(rng, lattice, free, ends, paths, sizes):
     for i in range(len(paths)):
         for _ in range(_MOST_DRAWS):
             for row in range(len(ends) - 1):
-                cells[row + 1] = free[integer(rng, ends[row], ends[row + 1])]
+                cells[row + 1] = free[draw_integer(rng, ends[row], ends[row + 1])]
             sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
             if sizes[i]:
                 break

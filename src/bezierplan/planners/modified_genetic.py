@@ -19,19 +19,19 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled, inlined
+from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import (
     MOST_POINTS,
     CurveKind,
     Scratch,
-    scratch_for,
+    prepare_scratch,
     validate,
 )
-from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
-from bezierplan.planners.parts.genetic import check_pairs, copy, same
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.gene_lattice import Field, build_field, build_polygon, find_genes_at
+from bezierplan.planners.parts.genetic import check_pairs, copy, is_same
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -198,16 +198,16 @@ def plan(
         return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
-    field = field_of(
+    field = build_field(
         grid,
         ends,
         GeneLattice(settings.gene_lattice).name,
         PointOrder(settings.point_order).name,
     )
-    known = np.empty(0, np.int64) if last is None else genes_at(grid.in_cells(last), field)
-    result = search(rng, field, settings, known, scratch_for(field))
+    known = np.empty(0, np.int64) if last is None else find_genes_at(grid.in_cells(last), field)
+    result = search(rng, field, settings, known, prepare_scratch(field))
     solved = len(result.ones) > 0
-    points = grid.in_units(polygon(result.ones, field))
+    points = grid.in_units(build_polygon(result.ones, field))
     points[[0, -1]] = problem.start, problem.target
     chained = settings.curve == CurveKind.chain and len(points) > 3
     return Plan(
@@ -240,24 +240,24 @@ def resume(
     return found, found.path.points[1:-1] if found.claimed_feasible else last
 
 
-@compiled
+@compile_kernel
 def search(
     rng: np.random.Generator, field: Field, rules: Settings, known: np.ndarray, scratch: Scratch
 ) -> Outcome:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
     known: the genes that are 1 in a chromosome with which the first population begins; if there are
-    none, all are random. scratch: `scratch_for` the field.
+    none, all are random. scratch: `prepare_scratch` the field.
     """
     watched = rules.diversity == Diversity.more_offspring
     size = rules.population
     children = 4 * (size // 2)
     places = size + (1 + rules.most_batches * watched) * children
     pool, kinds = (
-        gene_lists.empty_pool(places, _ROOM),
-        gene_lists.empty_kinds(places, len(field.points)),
+        gene_lists.prepare_pool(places, _ROOM),
+        gene_lists.prepare_kinds(places, len(field.points)),
     )
-    child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
+    child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.prepare_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations + 1)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
@@ -272,7 +272,7 @@ def search(
         history[iteration] = best_cost
         count = gene_lists.count_kinds(pool, 0, size, 0, kinds)
         distinct[iteration] = count
-        population_q[iteration] = gene_lists.mean_q(kinds, count, size)
+        population_q[iteration] = gene_lists.compute_mean_q(kinds, count, size)
         if iteration == rules.iterations:
             break
 
@@ -292,7 +292,7 @@ def search(
             extra_batches += 1
             if watched:
                 count = gene_lists.count_kinds(pool, before, fill, count, kinds)
-                q[iteration] = gene_lists.mean_q(kinds, count, fill)
+                q[iteration] = gene_lists.compute_mean_q(kinds, count, fill)
                 alike = q[iteration] > eta
         batches += extra_batches
         loops += extra_batches > 0
@@ -330,7 +330,7 @@ def _fill_population(rng, known, child, pool, field, rules, scratch):
                 copy(known, child)
                 count = len(known)
             else:
-                count = _random_chromosome(rng, child, field.choices, most)
+                count = _draw_chromosome(rng, child, field.choices, most)
             cost = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
             barren += 1
@@ -354,9 +354,9 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
     """
     tries = invalid = 0
     for _ in range(rules.population // 2):
-        one, other = _parents(rng, wheel)
+        one, other = _select_parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
-        cut = integer(rng, 1, len(field.points)) if crossed else 0
+        cut = draw_integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(2):
                 count = gene_lists.cross(
@@ -366,8 +366,8 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
                     count = _mutate(rng, child, count, field.settable, rules.mutation_rate)
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
-                        count = _random_chromosome(rng, child, field.choices, most)
-                    cost = _validated(child[:count], memory, field, rules, limit, scratch)
+                        count = _draw_chromosome(rng, child, field.choices, most)
+                    cost = _validate_new(child[:count], memory, field, rules, limit, scratch)
                     tries += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
@@ -383,12 +383,12 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
     return fill, tries, invalid
 
 
-@inlined
-def _validated(ones, memory, field, rules, limit, scratch):
+@compile_inline
+def _validate_new(ones, memory, field, rules, limit, scratch):
     """`validate`, without the work for a chromosome that has been there before, as most children
     have once the population is alike; limits never rise.
     """
-    place, known = gene_lists.entry(ones, memory)
+    place, known = gene_lists.find_entry(ones, memory)
     if not known:
         cost = validate(ones, field, rules, limit, scratch)
         gene_lists.put(ones, len(ones), cost, memory, place)
@@ -396,7 +396,7 @@ def _validated(ones, memory, field, rules, limit, scratch):
 
 
 @allocation_free
-def _parents(rng, wheel):
+def _select_parents(rng, wheel):
     """Two different parents, as a rule in proportion to fitness (Algorithm 1, line 9). The second
     is drawn from the wheel without the first one.
     """
@@ -418,21 +418,21 @@ def _mutate(rng, child, count, settable, rate):
     """Change random genes, except those that must not be set; returns how many are 1."""
     # From one gene that changes to the next: the gaps of independent trials of equal probability.
     unchanged = math.log1p(-rate) if rate < 1.0 else -np.inf
-    gene = gene_lists.gap(rng, unchanged)
+    gene = gene_lists.draw_gap(rng, unchanged)
     while gene < len(settable):
         if settable[gene]:
             count = gene_lists.flip(child, count, gene)
-        gene += 1 + gene_lists.gap(rng, unchanged)
+        gene += 1 + gene_lists.draw_gap(rng, unchanged)
     return count
 
 
 @allocation_free
-def _random_chromosome(rng, child, choices, most):
+def _draw_chromosome(rng, child, choices, most):
     """Write a chromosome of 1 to `most` random genes; returns how many."""
-    wanted = min(integer(rng, 1, most + 1), len(choices))
+    wanted = min(draw_integer(rng, 1, most + 1), len(choices))
     count = 0
     while count < wanted:
-        gene = choices[integer(rng, 0, len(choices))]
+        gene = choices[draw_integer(rng, 0, len(choices))]
         place = gene_lists.place_of(child, count, gene)
         if place == count or child[place] != gene:
             count = gene_lists.insert(child, count, place, gene)
@@ -446,7 +446,7 @@ def _is_too_alike(ones, cost, pool, fill, eta, genes, diversity):
     for i in range(fill):
         other = pool.ones[i, : pool.count[i]]
         if diversity == Diversity.relaxing:
-            total += gene_lists.q(ones, other, genes)
-        elif cost == pool.cost[i] and same(ones, other):
+            total += gene_lists.compute_q(ones, other, genes)
+        elif cost == pool.cost[i] and is_same(ones, other):
             return True
     return diversity == Diversity.relaxing and total > (1.0 - eta) * fill

@@ -12,17 +12,17 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, copy, roulette
+from bezierplan.planners.parts.genetic import check_pairs, copy, draw_parents
 from bezierplan.planners.parts.node_mutation import (
     Mutation,
     ObstacleNode,
     WithoutObstacle,
     mutate,
 )
-from bezierplan.planners.parts.random_integers import below
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.random_integers import draw_below
+from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import (
@@ -149,7 +149,7 @@ class _Outcome(NamedTuple):
     plus penalty. encounters: number of occupied cells it meets. history: lowest objective so far,
     by generation. feasible_last: share of feasible paths in the last population. made_infeasible:
     share of mutated feasible paths that the mutation made infeasible. diversity: mean of
-    `node_diversity`.
+    `measure_node_diversity`.
     """
 
     path: np.ndarray
@@ -200,7 +200,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     friction, closed = settings.friction, settings.corners == Corners.closed
     ground = ground_of(grid, friction, closed)
-    start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
+    start, target = (_find_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
     optimum = least_energy(grid, friction, closed, start, target)
     starts, moves = rng.spawn(2)
     if obstacles_on(ground, start, target) == 0:
@@ -214,16 +214,18 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     elif math.isinf(optimum):
         result, stop = _NOTHING, "no path"
     else:
-        alleles = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
+        alleles = _list_inner_cells(
+            ~grid.occupied | (settings.random_node == RandomNode.any), start, target
+        )
         result = _search(
             starts,
             moves,
             ground,
             start,
             target,
-            _inner(~grid.occupied, start, target),
+            _list_inner_cells(~grid.occupied, start, target),
             alleles,
-            in_cells(settings, grid.cell),
+            convert_to_cells(settings, grid.cell),
         )
         stop = (
             "no first population"
@@ -258,7 +260,7 @@ _NOTHING = _Outcome(
 )
 
 
-def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
+def _list_inner_cells(cells: np.ndarray, start: int, target: int) -> np.ndarray:
     """Numbers of the cells marked in a bool array (rows, columns), without start and target."""
     numbers = np.flatnonzero(cells)
     return numbers[(numbers != start) & (numbers != target)]
@@ -267,10 +269,10 @@ def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 def serves(problem: Problem) -> None:
     """Raise ValueError, naming the end, unless start and target are centres of cells."""
     for end in ("start", "target"):
-        _cell_at(problem.workspace, end, getattr(problem, end))
+        _find_cell_at(problem.workspace, end, getattr(problem, end))
 
 
-def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
+def _find_cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
     row, column = grid.cell_of(*point)
     number = int(row * grid.occupied.shape[1] + column)
     if point != grid.centre(number):
@@ -285,7 +287,7 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 # The search
 
 
-@compiled
+@compile_kernel
 def _search(starts, moves, ground, start, target, free, alleles, rules):
     """The genetic algorithm. free: free cells without the ends; alleles: for random mutation."""
     population = rules.population
@@ -293,10 +295,10 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
     lengths = np.empty(population, dtype=np.int64)
     ways = np.empty((0, 0))
     if rules.initial == Initial.rejection:
-        ways = free_ways(target, free, ground, rules.most_nodes)
+        ways = compute_free_ways(target, free, ground, rules.most_nodes)
     for i in range(population):
         paths[i, 0] = start
-        lengths[i] = _first_path(starts, paths[i], target, free, ground, rules, ways)
+        lengths[i] = _draw_first_path(starts, paths[i], target, free, ground, rules, ways)
         if lengths[i] == 0:
             none = np.full(1, np.inf)
             return _Outcome(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
@@ -313,7 +315,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         for i in range(population):
             objective[i], encounters[i] = _evaluate(paths[i, : lengths[i]], ground, rules.penalty)
         evaluations += population
-        diversity += node_diversity(paths, lengths, ground.occupied.size)
+        diversity += measure_node_diversity(paths, lengths, ground.occupied.size)
         order = ascending(objective)
         first = order[0]
         if objective[first] < best_objective - _IMPROVEMENT:
@@ -332,22 +334,22 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             break
 
         if rules.selection == Selection.roulette:
-            parents = roulette(moves, 1.0 / objective, population)
+            parents = draw_parents(moves, 1.0 / objective, population)
         elif rules.selection == Selection.linear_rank:
-            parents = order[roulette(moves, ranks, population)]
+            parents = order[draw_parents(moves, ranks, population)]
         else:
             parents = np.empty_like(order)
             for i in range(population):
-                parents[i] = order[below(moves, population // 2)]
+                parents[i] = order[draw_below(moves, population // 2)]
         if rules.cut == Cut.independent and 2 * lengths.max() > children.shape[1]:
             children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
-                cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
+                cut = other_cut = 1 + draw_below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
-                    cut = 1 + below(moves, lengths[mother] - 1)
-                    other_cut = 1 + below(moves, lengths[father] - 1)
+                    cut = 1 + draw_below(moves, lengths[mother] - 1)
+                    other_cut = 1 + draw_below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
             child_lengths[i] = join(
@@ -414,8 +416,8 @@ def _evaluate(path, ground, penalty):
     return energy + penalty * encounters, encounters
 
 
-@compiled
-def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
+@compile_kernel
+def measure_node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
     """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner
     nodes. cells: number of cells.
     """
@@ -435,27 +437,27 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 # The first population (meledje, Section 2.3).
 
 
-@compiled
-def _first_path(rng, path, target, free, ground, rules, ways):
+@compile_kernel
+def _draw_first_path(rng, path, target, free, ground, rules, ways):
     """Write a random path after its start; return its number of nodes, 0 if none was found.
 
-    ways: `free_ways`, for `rejection`.
+    ways: `compute_free_ways`, for `rejection`.
     """
     if rules.initial == Initial.rejection:
-        return kept_path(rng, path, target, free, ground, ways)
+        return draw_feasible_path(rng, path, target, free, ground, ways)
     for _ in range(_MOST_TRIES):
         length = (
             _walk(rng, path, target, free, ground)
             if rules.initial == Initial.feasible
-            else _random_path(rng, path, target, free)
+            else _draw_random_path(rng, path, target, free)
         )
         if length:
             return length
     return 0
 
 
-@compiled
-def free_ways(target: int, free: np.ndarray, ground: Ground, most_nodes: int) -> np.ndarray:
+@compile_kernel
+def compute_free_ways(target: int, free: np.ndarray, ground: Ground, most_nodes: int) -> np.ndarray:
     """Return the chance (cells, most_nodes + 1) that so many random free cells after a cell lead to
     the target without meeting an obstacle.
     """
@@ -470,8 +472,8 @@ def free_ways(target: int, free: np.ndarray, ground: Ground, most_nodes: int) ->
     return ways
 
 
-@compiled
-def kept_path(
+@compile_kernel
+def draw_feasible_path(
     rng: np.random.Generator,
     path: np.ndarray,
     target: int,
@@ -487,13 +489,13 @@ def kept_path(
     """
     if ways[path[0]].sum() == 0:
         return 0
-    inner = roulette(rng, ways[path[0]], 1)[0]
+    inner = draw_parents(rng, ways[path[0]], 1)[0]
     weights = np.empty(len(free))
     for k in range(1, inner + 1):
         for c in range(len(free)):
             is_free = obstacles_on(ground, path[k - 1], free[c]) == 0
             weights[c] = ways[free[c], inner - k] if is_free else 0.0
-        path[k] = free[roulette(rng, weights, 1)[0]]
+        path[k] = free[draw_parents(rng, weights, 1)[0]]
     path[inner + 1] = target
     return inner + 2
 
@@ -509,12 +511,12 @@ def _walk(rng, path, target, free, ground):
             return 0
         path[length] = -1
         for _ in range(len(free)):
-            cell = free[below(rng, len(free))]
-            if _continues(cell, path, length, ground):
+            cell = free[draw_below(rng, len(free))]
+            if _can_continue(cell, path, length, ground):
                 path[length] = cell
                 break
         if path[length] < 0:
-            path[length] = _one_of_few(rng, path, length, free, ground)
+            path[length] = _draw_one_of_few(rng, path, length, free, ground)
             if path[length] < 0:
                 return 0
         length += 1
@@ -523,18 +525,18 @@ def _walk(rng, path, target, free, ground):
 
 
 @allocation_free
-def _one_of_few(rng, path, length, free, ground):
+def _draw_one_of_few(rng, path, length, free, ground):
     """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it,
     found by checking all cells; -1 if there is none.
     """
     count = 0
     for cell in free:
-        count += _continues(cell, path, length, ground)
+        count += _can_continue(cell, path, length, ground)
     if count == 0:
         return -1
-    chosen = below(rng, count)
+    chosen = draw_below(rng, count)
     for cell in free:
-        if _continues(cell, path, length, ground):
+        if _can_continue(cell, path, length, ground):
             if chosen == 0:
                 return cell
             chosen -= 1
@@ -542,13 +544,13 @@ def _one_of_few(rng, path, length, free, ground):
 
 
 @allocation_free
-def _continues(cell, path, length, ground):
+def _can_continue(cell, path, length, ground):
     """Whether a cell is visible from the last cell of a path and not yet part of it."""
-    return obstacles_on(ground, path[length - 1], cell) == 0 and not _among(cell, path, length)
+    return obstacles_on(ground, path[length - 1], cell) == 0 and not _is_among(cell, path, length)
 
 
 @allocation_free
-def _among(cell, path, length):
+def _is_among(cell, path, length):
     for k in range(length):
         if path[k] == cell:
             return True
@@ -556,10 +558,10 @@ def _among(cell, path, length):
 
 
 @allocation_free
-def _random_path(rng, path, target, free):
+def _draw_random_path(rng, path, target, free):
     """A random number of inner nodes within the limit, each a random free cell."""
-    inner = below(rng, len(path) - 1)
+    inner = draw_below(rng, len(path) - 1)
     for k in range(1, inner + 1):
-        path[k] = free[below(rng, len(free))]
+        path[k] = free[draw_below(rng, len(free))]
     path[inner + 1] = target
     return inner + 2

@@ -15,7 +15,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces.circles import Circles
@@ -85,13 +85,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     neighbours = settings.neighbours if settings.links == Links.nearest else None
     drawn, way = 0, ()
     while drawn < settings.attempts and not len(way):
-        length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
+        length, way, roads = search_roadmap(
+            problem, rng, settings.nodes, neighbours, settings.d_min
+        )
         drawn += 1
     path = Path("polyline", way) if len(way) else None
     return Plan.of_one(path, length, "direct", {"roads": roads})._replace(evaluations=drawn)
 
 
-def roadmap(
+def search_roadmap(
     problem: Problem,
     rng: np.random.Generator,
     nodes: int,
@@ -105,22 +107,22 @@ def roadmap(
     """
     workspace = problem.workspace
     low, high, is_free, sees = (
-        _on_grid(workspace, d_min)
+        _prepare_grid(workspace, d_min)
         if isinstance(workspace, Grid)
-        else _among_circles(workspace, d_min)
+        else _prepare_circles(workspace, d_min)
     )
     points = np.concatenate(
-        [[problem.start, problem.target], _free_points(rng, nodes, low, high, is_free)]
+        [[problem.start, problem.target], _draw_free_points(rng, nodes, low, high, is_free)]
     )
-    one, other = _pairs(points, neighbours)
+    one, other = _list_pairs(points, neighbours)
     seen = sees(points[one], points[other])
     one, other = one[seen], other[seen]
     lengths = np.hypot(*(points[one] - points[other]).T)
-    length, way = _shortest_way(len(points), one, other, lengths)
+    length, way = _find_shortest_way(len(points), one, other, lengths)
     return length, points[way], len(one)
 
 
-def _among_circles(circles: Circles, d_min: float) -> tuple:
+def _prepare_circles(circles: Circles, d_min: float) -> tuple:
     """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and
     functions that tell which points and segments (n,) are free.
     """
@@ -129,22 +131,22 @@ def _among_circles(circles: Circles, d_min: float) -> tuple:
     return (
         low,
         high,
-        partial(_outside, circles.centres, radii),
-        partial(_visible, centres=circles.centres, radii=radii),
+        partial(_is_outside, circles.centres, radii),
+        partial(_is_visible, centres=circles.centres, radii=radii),
     )
 
 
-def _on_grid(grid: Grid, d_min: float) -> tuple:
-    """`_among_circles` for a grid: nodes lie between the centres of the outermost cells, in free
+def _prepare_grid(grid: Grid, d_min: float) -> tuple:
+    """`_prepare_circles` for a grid: nodes lie between the centres of the outermost cells, in free
     cells.
     """
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
     low, high = grid.in_units(np.array([[0.5, 0.5], np.array(grid.occupied.shape[::-1]) - 0.5]))
-    return low, high, partial(_in_free_cells, grid), partial(_free_segments, grid)
+    return low, high, partial(_is_in_free_cells, grid), partial(_find_free_segments, grid)
 
 
-def _free_points(
+def _draw_free_points(
     rng: np.random.Generator,
     nodes: int,
     low: np.ndarray,
@@ -161,31 +163,31 @@ def _free_points(
     return free[:nodes]
 
 
-def _outside(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _is_outside(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Whether points (n, 2) lie in no circle."""
     return (np.hypot(*(points[:, None] - centres).transpose(2, 0, 1)) >= radii).all(axis=1)
 
 
-def _in_free_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
+def _is_in_free_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
     """Whether points (n, 2) of a grid lie in free cells."""
     column, row = np.floor(grid.in_cells(points)).astype(int).T
     return ~grid.occupied[row, column]
 
 
-def _free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
+def _find_free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """Whether the segments between two arrays of points (n, 2) touch no occupied cell."""
-    return _free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
+    return _find_free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
 
 
-@compiled
-def _free_legs(occupied, starts, targets):
+@compile_kernel
+def _find_free_legs(occupied, starts, targets):
     free = np.empty(len(starts), dtype=np.bool_)
     for i in range(len(starts)):
         free[i] = is_free_leg(occupied, starts[i, 0], starts[i, 1], targets[i, 0], targets[i, 1])
     return free
 
 
-def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
+def _list_pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of different nodes, as two index arrays (pairs,), each pair once: all pairs, or those
     in which one node is among the other's nearest.
     """
@@ -202,7 +204,7 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     return np.divmod(np.flatnonzero(linked), count)
 
 
-def _visible(
+def _is_visible(
     starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray
 ) -> np.ndarray:
     """Whether the segments between two arrays of points (n, 2) enter no circle; touching is
@@ -219,8 +221,8 @@ def _visible(
     return visible
 
 
-@compiled
-def _shortest_way(count, tails, heads, lengths):
+@compile_kernel
+def _find_shortest_way(count, tails, heads, lengths):
     """Dijkstra's algorithm along links (n,) of `count` nodes: the length of the shortest path from
     node 0 to node 1, and its nodes; infinite and empty if they are not connected.
     """

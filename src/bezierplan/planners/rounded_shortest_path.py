@@ -16,9 +16,9 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import curves, shortest_paths
-from bezierplan.geometry.checker import first_collision
-from bezierplan.geometry.region import from_origin, region
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.geometry.checker import find_first_collision
+from bezierplan.geometry.region import build_region, from_origin
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
@@ -177,7 +177,7 @@ def _round(
     """Return control points of the rounded path, the radius (n,) of each turn, and the number of
     paths tried.
     """
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     course = Course(
         np.array([problem.start, problem.target], dtype=float),
         -from_origin(np.zeros(2), blocked),
@@ -186,26 +186,26 @@ def _round(
     )
     # Around corners of a grown obstacle there may be less room than for a circle.
     for workspace in (problem.workspace, None):
-        turns = turns_of(bound.points, workspace)
+        turns = find_turns(bound.points, workspace)
         radii, is_free = _widen(course, turns, blocked, bound.length, settings.turning_radius)
         if is_free:
             break
-    points, _ = _draw(course, turns, _shorter(course, turns, radii))
+    points, _ = _draw(course, turns, _shorten(course, turns, radii))
     return points, radii, int(course.trials[0])
 
 
-def turns_of(points: np.ndarray, workspace: object) -> Turns:
+def find_turns(points: np.ndarray, workspace: object) -> Turns:
     """Return the turns of a shortest path, a polyline (n, 2). Around circles and round corners the
     vertices of an arc are one turn.
     """
-    heading = _unit(np.diff(points, axis=0))
+    heading = _normalise(np.diff(points, axis=0))
     bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
     bends = np.flatnonzero(
         (np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0)
     )
     corner, radius = points[bends + 1], np.zeros(len(bends))
     first = np.ones(len(bends), dtype=bool)
-    centres, radii, near = _discs(workspace)
+    centres, radii, near = _list_discs(workspace)
     if len(bends) and len(radii):
         depth = np.hypot(*(corner[:, None] - centres).transpose(2, 0, 1)) - radii
         nearest = np.abs(depth).argmin(axis=1)
@@ -226,7 +226,7 @@ def turns_of(points: np.ndarray, workspace: object) -> Turns:
     )
 
 
-def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
+def _list_discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
     """Return centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close
     to it, in units, its vertices lie.
     """
@@ -244,14 +244,14 @@ def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
     return np.empty((0, 2)), np.empty(0), 0.0
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def _normalise(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
-@compiled
+@compile_kernel
 def _widen(course, turns, region, shortest, wish):
     """Return the radius (n,) of each turn, and whether the path is free."""
-    levels = _ladder(min(wish, _TIGHTEST * shortest), min(wish, _WIDEST * shortest))
+    levels = _list_radii(min(wish, _TIGHTEST * shortest), min(wish, _WIDEST * shortest))
     top = len(levels) - 1
     radii = turns.radius.copy()
 
@@ -302,8 +302,8 @@ def _widen(course, turns, region, shortest, wish):
     return radii, _try(course, turns, region, radii)[0] == _FREE
 
 
-@compiled
-def _ladder(least, most):
+@compile_kernel
+def _list_radii(least, most):
     """Return the radii to try, ascending: whole powers of one number, between two given ends."""
     if least == most:
         return np.array([most])
@@ -316,22 +316,22 @@ def _ladder(least, most):
     return levels
 
 
-@compiled
+@compile_kernel
 def _raise(radii, turns, live, level):
     """Return radii (n,) with those of live turns raised to a level, or as wide as the obstacle."""
     return np.where(live, np.maximum(level, turns.radius), radii)
 
 
-@compiled
+@compile_kernel
 def _try(course, turns, region, radii):
     """Try the path with some radii (n,): return what was found, and if it is blocked, the first and
     the last of the turns that are to blame.
     """
     course.trials[0] += 1
-    string = _shorter(course, turns, radii)
+    string = _shorten(course, turns, radii)
     if string.crowd >= 0:
         return _CROWDED, string.first[string.crowd], string.last[string.crowd]
-    if _length(string) > course.limit:
+    if _measure_string(string) > course.limit:
         return _TOO_LONG, 0, len(radii) - 1
     points, part = _draw(course, turns, string)
     piece = np.empty((1, 4, 2))
@@ -339,7 +339,7 @@ def _try(course, turns, region, radii):
         for i in range(4):
             for axis in range(2):
                 piece[0, i, axis] = points[3 * k + i, axis] - course.origin[axis]
-        at = first_collision(piece, region)[0]
+        at = find_first_collision(piece, region)[0]
         if at < np.inf and string.count == 0:
             return _BLOCKED, 0, -1
         if at < np.inf:
@@ -350,15 +350,15 @@ def _try(course, turns, region, radii):
     return _FREE, 0, 0
 
 
-@compiled
-def _shorter(course, turns, radii):
+@compile_kernel
+def _shorten(course, turns, radii):
     """Return the string around circles of some radii (n,)."""
     string, other = _pull(course, turns, radii, False), _pull(course, turns, radii, True)
-    return other if _length(other) < _length(string) else string
+    return other if _measure_string(other) < _measure_string(string) else string
 
 
 @allocation_free
-def _length(string):
+def _measure_string(string):
     """Return the length of a string, infinite if its circles are crowded."""
     length = 0.0 if string.crowd < 0 else math.inf
     for (ax, ay), (bx, by) in string.legs[: string.count + 1]:
@@ -368,7 +368,7 @@ def _length(string):
     return length
 
 
-@compiled
+@compile_kernel
 def _pull(course, turns, radii, patient):
     """Return the string pulled tight around circles of some radii (n,). Circles that are in each
     other's way join at once or, if patient, when the others have come to rest: either may be
@@ -396,7 +396,7 @@ def _pull(course, turns, radii, patient):
                 inward[k] /= size
             if not _place(turns, first[k], last[k], reach[k], inward[k], centres[k]):
                 return String(k, count, first, last, centres, reach, legs, sweeps)
-        _part(course.ends, turns, first, last, count, reach, side, centres)
+        _separate_circles(course.ends, turns, first, last, count, reach, side, centres)
         wrong = crowd = _join(course.ends, centres, side * reach, count, legs, heading)
         for k in range(count):
             expected = turns.angle[first[k] : last[k] + 1].sum()
@@ -415,9 +415,9 @@ def _pull(course, turns, radii, patient):
         # string passes outside its corners without it.
         if patient and pulls < _PULLS:
             continue
-        gone, neighbour = wrong, _neighbour(centres, side, count, wrong)
+        gone, neighbour = wrong, _find_neighbour(centres, side, count, wrong)
         x, y = centres[neighbour]
-        is_inside = neighbour >= 0 and _contains(
+        is_inside = neighbour >= 0 and _contains_corners(
             turns, first[wrong], last[wrong], reach[neighbour], x, y
         )
         if not is_inside and _is_needless(
@@ -440,7 +440,7 @@ def _pull(course, turns, radii, patient):
 
 
 @allocation_free
-def _neighbour(centres, side, count, k):
+def _find_neighbour(centres, side, count, k):
     """Return the nearer neighbour of a circle to the same side, or -1."""
     nearest, gap = -1, np.inf
     for j in (k - 1, k + 1):
@@ -460,7 +460,7 @@ def _place(turns, first, last, radius, inward, centre):
         depth = radius - turns.radius[i]
         x = turns.corner[i, 0] + depth * inward[0]
         y = turns.corner[i, 1] + depth * inward[1]
-        if _contains(turns, first, last, radius, x, y):
+        if _contains_corners(turns, first, last, radius, x, y):
             centre[0], centre[1] = x, y
             return True
     # Between two corners: where circles of the centre's distance from each meet.
@@ -479,14 +479,14 @@ def _place(turns, first, last, radius, inward, centre):
                 x = turns.corner[i, 0] + share * dx - sign * height * dy
                 y = turns.corner[i, 1] + share * dy + sign * height * dx
                 depth = x * inward[0] + y * inward[1]
-                if depth > deepest and _contains(turns, first, last, radius, x, y):
+                if depth > deepest and _contains_corners(turns, first, last, radius, x, y):
                     deepest = depth
                     centre[0], centre[1] = x, y
     return deepest > -math.inf
 
 
 @allocation_free
-def _part(ends, turns, first, last, count, reach, side, centres):
+def _separate_circles(ends, turns, first, last, count, reach, side, centres):
     """Move circles apart that overlap the next one, of the other sense, or contain an end of the
     path, as far as their corners allow: no leg of a string fits there.
     """
@@ -525,7 +525,7 @@ def _hold(turns, first, last, radius, centre):
 
 
 @allocation_free
-def _contains(turns, first, last, radius, x, y):
+def _contains_corners(turns, first, last, radius, x, y):
     """Return whether a circle contains the corners of some turns."""
     for i in range(first, last + 1):
         distance = math.hypot(x - turns.corner[i, 0], y - turns.corner[i, 1])
@@ -572,7 +572,7 @@ def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
     return fits
 
 
-@compiled
+@compile_kernel
 def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
     """Return whether the leg past a circle, from the one before it to the next, leaves its corners
     on the side to which the path turns there.
@@ -587,7 +587,7 @@ def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
     return True
 
 
-@compiled
+@compile_kernel
 def _draw(course, turns, string):
     """Return control points (3 k + 1, 2) of legs and arcs as cubic pieces, and what each piece (k,)
     is: 2 i for the leg to circle i, 2 i + 1 for the arc around it.

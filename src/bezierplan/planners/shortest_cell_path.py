@@ -25,14 +25,14 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     bound = shortest_paths.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
     path = None
     if math.isfinite(bound.length):
-        points = _without_straight_vertices(grid.in_units(bound.points))
+        points = _drop_straight_vertices(grid.in_units(bound.points))
         # A computed cell centre can differ from the given one in the last bit.
         points[[0, -1]] = problem.start, problem.target
         path = Path("polyline", points)
     return Plan.of_one(path, bound.length * grid.cell, "exact")
 
 
-def _without_straight_vertices(points: np.ndarray) -> np.ndarray:
+def _drop_straight_vertices(points: np.ndarray) -> np.ndarray:
     """A polyline (n, 2) without the vertices between two equal steps."""
     steps = np.diff(points, axis=0)
     turns = np.any(np.abs(steps[1:] - steps[:-1]) > 1e-9, axis=1)

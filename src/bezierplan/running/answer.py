@@ -55,7 +55,7 @@ def of(name: str) -> Iterator[None]:
         raise PlannerFailure(f"{name}: {told(error)}") from error
 
 
-def plain(answer: Any, names: Collection[str] = ()) -> Plan:
+def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
     """A planner's answer as a Plan of plain values, copied once: its points and history are new
     arrays of float64.
 
@@ -65,22 +65,22 @@ def plain(answer: Any, names: Collection[str] = ()) -> Plan:
     if not isinstance(answer, Plan):
         raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
     plan = Plan(
-        path=None if answer.path is None else path_of(answer.path),
-        objective=_objective(answer.objective),
-        claimed_feasible=_claim(answer.claimed_feasible),
-        evaluations=_evaluations(answer.evaluations),
-        history=_history(answer.history),
+        path=None if answer.path is None else read_path(answer.path),
+        objective=_check_objective(answer.objective),
+        claimed_feasible=_check_claim(answer.claimed_feasible),
+        evaluations=_check_evaluations(answer.evaluations),
+        history=_check_history(answer.history),
         stop=_stop(answer.stop),
-        extra=_extra(answer.extra, names),
+        extra=_check_extra(answer.extra, names),
     )
     if plan.path is None and plan.claimed_feasible:
         raise Unfit("claimed_feasible: true without a path")
     return plan
 
 
-def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan:
-    """`plain`, of an answer whose path joins the problem's start and target. Raises Unfit."""
-    plan = plain(answer, names)
+def accept_answer(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan:
+    """Convert an answer whose path joins the problem's start and target. Raises Unfit."""
+    plan = convert_answer(answer, names)
     check_ends(plan.path, problem)
     return plan
 
@@ -125,19 +125,19 @@ def check_ends(path: Path | None, problem: Problem) -> None:
             raise Unfit(f"path: {end}: {point}; expected exactly {wanted}")
 
 
-def stored(path: Path | None) -> tuple[str, list[float]]:
+def store_path(path: Path | None) -> tuple[str, list[float]]:
     """A path as a row stores it: its curve, and its control points flat as x0, y0, x1, y1, ...;
     empty without a path.
     """
     return ("", []) if path is None else (path.curve, path.points.ravel().tolist())
 
 
-def restored(curve: str, points: Any) -> Path | None:
-    """The path that `stored` wrote."""
+def restore_path(curve: str, points: Any) -> Path | None:
+    """The path that `store_path` wrote."""
     return Path(curve, np.array(points, dtype=float).reshape(-1, 2)) if curve else None
 
 
-def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
+def judge_path(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
     """Length and verdict of a path; without one, not a number and `NO_PATH`."""
     if path is None:
         return math.nan, NO_PATH
@@ -150,7 +150,7 @@ def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
 # The fields. Each function returns the plain value of a field, or raises Unfit.
 
 
-def path_of(path: Any) -> Path:
+def read_path(path: Any) -> Path:
     """A path as plain values. Raises Unfit."""
     if not isinstance(path, Path):
         raise Unfit("path: expected None or a Path")
@@ -173,19 +173,19 @@ def path_of(path: Any) -> Path:
     return copy
 
 
-def _objective(value: Any) -> float:
+def _check_objective(value: Any) -> float:
     if not _is_a(Real, value) or math.isnan(value):
         raise Unfit("objective: expected a number, and not nan")
     return float(value)
 
 
-def _claim(value: Any) -> bool:
+def _check_claim(value: Any) -> bool:
     if not isinstance(value, _TRUTHS):
         raise Unfit("claimed_feasible: expected true or false")
     return bool(value)
 
 
-def _evaluations(value: Any) -> int:
+def _check_evaluations(value: Any) -> int:
     if not _is_a(Integral, value) or not 0 <= value <= _LARGEST_WHOLE:
         raise Unfit(
             f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}"
@@ -193,7 +193,7 @@ def _evaluations(value: Any) -> int:
     return int(value)
 
 
-def _history(values: Any) -> np.ndarray:
+def _check_history(values: Any) -> np.ndarray:
     if not _is_array(values, 1, "fiu") or not len(values) or np.isnan(values).any():
         raise Unfit("history: expected an array of numbers without nan, (generations + 1,)")
     return np.array(values, dtype=float)
@@ -205,7 +205,7 @@ def _stop(value: Any) -> str:
     return value
 
 
-def _extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
+def _check_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
     if not isinstance(columns, dict):
         raise Unfit("extra: expected names with numbers or truths")
     for name in columns:
@@ -216,10 +216,10 @@ def _extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
             )
         if name in names:
             raise Unfit(f"extra: {name}: a column or setting has this name already")
-    return {name: _column(name, value) for name, value in columns.items()}
+    return {name: _check_column(name, value) for name, value in columns.items()}
 
 
-def _column(name: str, value: Any) -> float | bool:
+def _check_column(name: str, value: Any) -> float | bool:
     if isinstance(value, _TRUTHS):
         return bool(value)
     if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _EXACT):

@@ -65,6 +65,6 @@ class Chunk(NamedTuple):
         return f"{self.study}/{self.experiment}/*/{self.method}"
 
 
-def chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
+def find_chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
     """The files of chunks below a folder, without the times and traces next to them."""
     return [file for file in sorted(folder.glob(pattern)) if file.stem.isdecimal()]

@@ -1,7 +1,8 @@
 """Columns of the runs tables, each declared once, as a line of columns.csv next to this file: its
 table, what its values are, its unit and its meaning. What a file of runs holds (`rows.table`), what
-is expected of it when it is read (`rows.fault`), which names are taken, what a study may select by
-(`study.design`), and the tables in results/README.md (`python docs/tables_of_keys.py`) follow.
+is expected of it when it is read (`rows.find_fault`), which names are taken, what a study may
+select by (`study.design`), and the tables in results/README.md (`python docs/tables_of_keys.py`)
+follow.
 
 A row is what is known before its run (`Planned`, with the place of its problem after `problem` and
 its settings after `planner`), what the run found out (`Outcome`), for a drive more of that
@@ -41,7 +42,7 @@ class Column(NamedTuple):
     detail: str = ""
 
 
-def tables(module: str) -> list[type]:
+def read_tables(module: str) -> list[type]:
     """Named tuples, one for each table of the file columns.csv next to a module's file."""
     fields: dict[str, list[tuple[str, Any]]] = {}
     with Path(module).with_suffix(".csv").open(encoding="utf-8", newline="") as file:
@@ -51,7 +52,7 @@ def tables(module: str) -> list[type]:
     return [NamedTuple(table, of) for table, of in fields.items()]
 
 
-Planned, Outcome, DriveOutcome, Bound, DriveBound, Times, DriveTimes = tables(__file__)
+Planned, Outcome, DriveOutcome, Bound, DriveBound, Times, DriveTimes = read_tables(__file__)
 
 
 class Table(NamedTuple):
@@ -85,28 +86,30 @@ def declared(*tables: type) -> dict[str, tuple[type, Column]]:
     }
 
 
-def _types(*tables: type) -> dict[str, str]:
+def _read_types(*tables: type) -> dict[str, str]:
     return {name: TYPES.get(kind, "list") for name, (kind, _) in declared(*tables).items()}
 
 
-PLANNED = _types(Planned)
+PLANNED = _read_types(Planned)
 """Columns of every runs table known before a run, beside settings, with their types (`TYPES`)."""
 
-RESULTS = _types(Outcome)
+RESULTS = _read_types(Outcome)
 """Likewise: those that a run finds out; the settings and a planner's extra columns stand between
 `planner` and `objective`, and at the end.
 """
 
-DRIVE_RESULTS = _types(DriveOutcome)
+DRIVE_RESULTS = _read_types(DriveOutcome)
 """Columns of a runs table that only drives have."""
 
 ANSWER = ["path_points", "history"]
 """Columns of a run by which its answer equals that of another one: lists of numbers."""
 
-JOINED = {name: kind for name, kind in _types(Bound, Times).items() if name not in PLANNED}
-"""Columns joined to a runs table when it is read: those of `problems.bounds_of`, and the times."""
+JOINED = {name: kind for name, kind in _read_types(Bound, Times).items() if name not in PLANNED}
+"""Columns joined to a runs table when it is read: those of `problems.compute_bounds`, and the
+times.
+"""
 
-DRIVE_JOINED = _types(DriveBound, DriveTimes)
+DRIVE_JOINED = _read_types(DriveBound, DriveTimes)
 """Columns that are joined to the table of drives: likewise, and the times of plans."""
 
 WORDS = ("value", "statistic", "metric", "n", "unit", "table")

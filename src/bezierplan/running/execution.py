@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from bezierplan.geometry.region import Region, region
+from bezierplan.geometry.region import Region, build_region
 from bezierplan.planners import is_file
 from bezierplan.running import answer, rides, rows
 from bezierplan.running.chunk import Chunk, Condition
@@ -39,7 +39,7 @@ def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
     return f"{chunk.study}/{chunk.experiment}/{condition.name}/{chunk.method}/{repeat}"
 
 
-def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
+def resolve_settings(chunk: Chunk, condition: Condition) -> dict[str, Any]:
     """The settings of a chunk's method under a condition: those of its problem are applied first,
     then the varied values. Presets expand to their settings; varied values that are not settings of
     the planner are left out.
@@ -49,11 +49,11 @@ def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
         settings |= (
             chunk.presets[name][str(value).lower()] if name in chunk.presets else {name: value}
         )
-    accepted = interface.traits(chunk.planner).settings
+    accepted = interface.read_traits(chunk.planner).settings
     return {name: value for name, value in settings.items() if name in accepted}
 
 
-def task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
+def build_task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
     """A run as what executes planners needs it. Its generator is seeded from names only, not from
     order, cores or chunks.
     """
@@ -67,16 +67,16 @@ def task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
         f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}",
         condition.problem,
         [chunk.study, chunk.experiment, *parts[chunk.seeds], repeat],
-        settings_in(chunk, condition),
+        resolve_settings(chunk, condition),
     )
 
 
-def told_chunk(chunk: Chunk) -> str:
+def describe_chunk(chunk: Chunk) -> str:
     """How a message about all runs of a chunk begins."""
     return f"run {chunk.name}: planner {chunk.planner}"
 
 
-def chunk_replies(
+def run_tasks(
     chunk: Chunk,
     problems: dict[str, Problem],
     tasks: Sequence[worker.Task],
@@ -84,13 +84,13 @@ def chunk_replies(
     worlds: dict[str, World] | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
-    """`worker.replies` of a chunk's planner. Raises PlannerFailure, naming the run."""
+    """`worker.run_tasks` of a chunk's planner. Raises PlannerFailure, naming the run."""
     work = worker.Work(chunk.planner, problems, function, worlds, chunk.policy)
     if is_file(chunk.planner):
-        yield from process.isolated_replies(work, tasks, again, told_chunk(chunk), chunk.time_limit)
+        yield from process.run_isolated(work, tasks, again, describe_chunk(chunk), chunk.time_limit)
         return
-    yield from worker.replies(work, tasks, again, partial(begin, chunk.time_limit))
-    begin(None, told_chunk(chunk))
+    yield from worker.run_tasks(work, tasks, again, partial(begin, chunk.time_limit))
+    begin(None, describe_chunk(chunk))
 
 
 def run(
@@ -104,31 +104,31 @@ def run(
     """The plan of one run; its track: the control points (n, 2) of the best path after each
     iteration; or, in a world, its ride.
     """
-    name, tasks = condition.problem, [task(chunk, condition, repeat)]
+    name, tasks = condition.problem, [build_task(chunk, condition, repeat)]
     worlds = {name: world} if world else None
-    (only,) = chunk_replies(chunk, {name: problem}, tasks, worlds=worlds, function=function)
+    (only,) = run_tasks(chunk, {name: problem}, tasks, worlds=worlds, function=function)
     return only.result
 
 
-def tracked(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[np.ndarray]:
+def track_again(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[np.ndarray]:
     """The track of a run, by its row. Raises ValueError if it has another path than the row."""
-    track = run(chunk, *_named(chunk, row), problem, function="track")
+    track = run(chunk, *_find_condition(chunk, row), problem, function="track")
     _refuse_other_path(row, track[-1])
     return track
 
 
-def redriven(
+def drive_again(
     chunk: Chunk, row: Mapping[str, Any], problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
     """The drive of a run, by its row, and the verdict on it: for what no table keeps. Raises
     ValueError if it has another path than the row.
     """
-    ride = run(chunk, *_named(chunk, row), problem, world)
-    _refuse_other_path(row, rides.driven(ride).points)
+    ride = run(chunk, *_find_condition(chunk, row), problem, world)
+    _refuse_other_path(row, rides.trace_path(ride).points)
     return ride, motion_check.check(ride.motion, world)
 
 
-def _named(chunk: Chunk, row: Mapping[str, Any]) -> tuple[Condition, int]:
+def _find_condition(chunk: Chunk, row: Mapping[str, Any]) -> tuple[Condition, int]:
     """The condition and the repeat of a row."""
     return {each.name: each for each in chunk.conditions()}[row["condition"]], int(row["repeat"])
 
@@ -142,7 +142,7 @@ def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
         )
 
 
-def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
+def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
     """The first columns of a row: the run's id and its parts, its place, all settings in force."""
     return {
         "id": run_id(chunk, condition, repeat),
@@ -158,12 +158,12 @@ def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
         "method": chunk.method,
         "repeat": repeat,
         "planner": chunk.planner,
-        **settings_in(chunk, condition),
+        **resolve_settings(chunk, condition),
         **condition.values,
     }
 
 
-def row(
+def build_row(
     chunk: Chunk,
     condition: Condition,
     repeat: int,
@@ -179,12 +179,12 @@ def row(
     answer is not valid for this problem: for example, if its path begins or ends elsewhere, or a
     column would overwrite another.
     """
-    run = task(chunk, condition, repeat)
+    run = build_task(chunk, condition, repeat)
     with answer.of(run.name):
-        plan = answer.accepted(plan, problem, [*TAKEN, *run.settings, *condition.values])
-        answer.check_history(plan, interface.traits(chunk.planner).keeps_best)
-    curve, points = answer.stored(plan.path)
-    length, check = answer.verdict(answer.restored(curve, points), blocked)
+        plan = answer.accept_answer(plan, problem, [*TAKEN, *run.settings, *condition.values])
+        answer.check_history(plan, interface.read_traits(chunk.planner).keeps_best)
+    curve, points = answer.store_path(plan.path)
+    length, check = answer.judge_path(answer.restore_path(curve, points), blocked)
     outcome = Outcome(
         drew=drew,
         objective=plan.objective,
@@ -202,22 +202,22 @@ def row(
         path_curve=curve,
         path_points=points,
     )
-    return identity(chunk, condition, repeat) | outcome._asdict() | plan.extra
+    return identify_run(chunk, condition, repeat) | outcome._asdict() | plan.extra
 
 
-def rows_again(
+def make_rows_again(
     chunk: Chunk,
     runs: list[tuple[Condition, int]],
     problems: dict[str, Problem],
     worlds: dict[str, World],
 ) -> list[dict[str, Any]]:
     """The rows of some runs, which are made again."""
-    tasks = [task(chunk, *run) for run in runs]
+    tasks = [build_task(chunk, *run) for run in runs]
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
     judged = _judge(chunk, met, worlds)
     return [
         judged(*run, each)[0]
-        for run, each in zip(runs, chunk_replies(chunk, met, tasks, worlds=worlds))
+        for run, each in zip(runs, run_tasks(chunk, met, tasks, worlds=worlds))
     ]
 
 
@@ -225,14 +225,18 @@ def _judge(
     chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
 ) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
     """A function that makes, of what a run has found, a row, and of a drive its trace."""
-    regions = {} if worlds else {name: region(each.workspace) for name, each in problems.items()}
+    regions = (
+        {} if worlds else {name: build_region(each.workspace) for name, each in problems.items()}
+    )
 
     def judged(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
         name, result, drew = condition.problem, reply.result, reply.drew
         if not worlds:
-            return row(chunk, condition, repeat, result, drew, problems[name], regions[name]), {}
-        known = identity(chunk, condition, repeat)
-        outcome, trace = rides.judged(result, drew, problems[name], worlds[name])
+            return build_row(
+                chunk, condition, repeat, result, drew, problems[name], regions[name]
+            ), {}
+        known = identify_run(chunk, condition, repeat)
+        outcome, trace = rides.judge_drive(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
     return judged
@@ -242,24 +246,26 @@ def run_chunk(
     problems: dict[str, Problem], chunk: Chunk, worlds: dict[str, World] | None = None
 ) -> tuple[pa.Table, ...]:
     """The runs of a chunk (columns as in `columns`); in a separate table because they are never
-    reproducible, their times; and, of drives in worlds, their traces (`rides.judged`).
+    reproducible, their times; and, of drives in worlds, their traces (`rides.judge_drive`).
 
     A warm-up makes times comparable, and its runs must repeat themselves. A planner whose repeats
     are equal, and which does not say so, is told on stderr. Raises PlannerFailure, naming the run,
-    if a planner fails, does not return a valid plan for the problem (`row`), or gives another plan
-    when its first or last run is repeated.
+    if a planner fails, does not return a valid plan for the problem (`build_row`), or gives another
+    plan when its first or last run is repeated.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
     every, judged = chunk.conditions(), _judge(chunk, met, moving)
-    deterministic = interface.traits(chunk.planner).deterministic
+    deterministic = interface.read_traits(chunk.planner).deterministic
     order = _order(chunk, len(every), range(*chunk.repeats))
-    tasks = [task(chunk, every[k], repeat) for k, repeat in order]
+    tasks = [build_task(chunk, every[k], repeat) for k, repeat in order]
     # The first run, and in a process of its own the last one. What needs no random numbers must not
     # be changed by others.
-    again = [task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])]
+    again = [
+        build_task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])
+    ]
     warm, done, first, failures = defaultdict(list), {}, None, {}
-    for reply in chunk_replies(chunk, met, tasks, again, moving):
+    for reply in run_tasks(chunk, met, tasks, again, moving):
         (k, repeat), first = order[reply.number], first or reply.result
         try:
             outcome, trace = judged(every[k], repeat, reply)
@@ -286,12 +292,14 @@ def run_chunk(
     # A few repeats of a planner that draws may be equal by chance.
     many = len(found) >= wanted * (5 if drew else 2)
     if not deterministic and wanted == len(answers) and many:
-        print(f"{told_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True)
+        print(
+            f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True
+        )
     if not moving:
-        return rows.table(runs, Planned, Outcome), rows.table(times, Times)
+        return rows.build_table(runs, Planned, Outcome), rows.build_table(times, Times)
     return (
-        rows.table(runs, Planned, Outcome, DriveOutcome),
-        rows.table(times, Times, DriveTimes),
+        rows.build_table(runs, Planned, Outcome, DriveOutcome),
+        rows.build_table(times, Times, DriveTimes),
         pa.Table.from_pylist(traces),
     )
 

@@ -17,7 +17,7 @@ Shows = dict[str, dict[str, int]]
 PAPER, BEYOND = "paper", "beyond"
 
 
-def tree(artefact: str) -> str:
+def choose_tree(artefact: str) -> str:
     """The folder of a table or figure: `paper` if it has a number in the paper.
 
     >>> tree("table1"), tree("figure_scale")
@@ -39,7 +39,7 @@ class Files(NamedTuple):
         return [chunk for chunks in self.runs.values() for chunk in chunks]
 
 
-def experiments(shows: Shows, inputs: Any) -> dict[str, Files]:
+def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
     """The files of each experiment, from a job's inputs `runs`, `problems` and `bounds`."""
     runs = iter(getattr(inputs, "runs", ()))
     return {
@@ -54,6 +54,6 @@ def experiments(shows: Shows, inputs: Any) -> dict[str, Files]:
     }
 
 
-def by_table(files: Iterable[str]) -> dict[str, str]:
+def group_by_table(files: Iterable[str]) -> dict[str, str]:
     """Files of published numbers, or of comparisons with them, by the table that they are of."""
     return {Path(file).name.split(".")[0]: file for file in files}

@@ -35,7 +35,7 @@ _STRAIGHT = 1e-8
 _SAME = 1e-9
 
 
-def rounding(names: Collection[str]) -> dict[str, float]:
+def choose_rounding(names: Collection[str]) -> dict[str, float]:
     """Return settings of the planner with a turning radius, beside those of some names: a radius
     that is asked for may make the path as long as it needs.
     """
@@ -44,7 +44,7 @@ def rounding(names: Collection[str]) -> dict[str, float]:
     return {"turning_radius": math.inf, "excess": EXCESS}
 
 
-def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
+def split_into_legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
     """The problems from start to the first way point, and so on to the target.
 
     Raises ValueError for a way point that is not free, or equals its neighbour.
@@ -63,7 +63,7 @@ def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
     return [problem._replace(start=start, target=target) for start, target in pairs]
 
 
-def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
+def find_shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
     """The exact shortest path through all legs."""
     bounds = [shortest_paths.shortest_path(part) for part in parts]
     return shortest_paths.Bound(
@@ -84,11 +84,11 @@ class Run(NamedTuple):
     seed: int
 
 
-def plans(
+def yield_plans(
     plan: Callable[..., Any], runs: Sequence[Run], file: str
 ) -> Iterator[tuple[Run, Plan, float]]:
-    """Yield each run, what a planner answers in it, as plain values (`answer.accepted`), and its
-    CPU seconds.
+    """Yield each run, what a planner answers in it, as plain values (`answer.accept_answer`), and
+    its CPU seconds.
 
     plan: its function. file: the path of its file, which is executed in a process of its own; empty
     if it is not given as one. Raises PlannerFailure for an answer that is none.
@@ -100,21 +100,23 @@ def plans(
             problems[task.problem] = leg
             tasks.append(task)
     if file:
-        replies = process.isolated_replies(worker.Work(file, problems), tasks, (), runs[0].label)
+        replies = process.run_isolated(worker.Work(file, problems), tasks, (), runs[0].label)
     else:
         calls = (
             partial(plan, problems[task.problem], task.generator(), **task.settings)
             for task in tasks
         )
-        replies = (worker.Reply(0, *worker.timed(call), True) for call in calls)
+        replies = (worker.Reply(0, *worker.time_call(call), True) for call in calls)
     for run in runs:
         made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
         with answer.of(run.label):
-            legs = [answer.accepted(each.result, leg, taken) for each, leg in zip(made, run.legs)]
-        yield run, joined(legs), sum(each.cpu for each in made)
+            legs = [
+                answer.accept_answer(each.result, leg, taken) for each, leg in zip(made, run.legs)
+            ]
+        yield run, join_answers(legs), sum(each.cpu for each in made)
 
 
-def joined(answers: Sequence[Plan]) -> Plan:
+def join_answers(answers: Sequence[Plan]) -> Plan:
     """One answer to all legs. A corner that is left at a way point counts as a turn."""
     lost = next((answer for answer in answers if answer.path is None), None)
     if lost or len(answers) == 1:
@@ -145,6 +147,6 @@ def _has_corner(arriving: Path, leaving: Path) -> bool:
     return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
 
 
-def keeps_radius(wish: float, radius: float) -> bool:
+def is_radius_kept(wish: float, radius: float) -> bool:
     """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
     return radius >= wish * (1 - _SAME)

@@ -18,7 +18,7 @@ import numpy as np
 
 from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.running.columns import Bound, DriveBound
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import bounds
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 
-def placed(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
+def place_problem(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
     """A problem whose start and target are known to be free, on the map that suits a planner of
     some kinds of workspace, None for all.
 
@@ -71,10 +71,10 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
             f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to {x_high:.12g} "
             f"and y from {y_low:.12g} to {y_high:.12g}"
         )
-    if blocks(region(home), point):
+    if is_blocked(build_region(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
-    if grown and blocks(region(workspace), point):
-        distance = check(np.array([[point, point]]), region(home)).clearance
+    if grown and is_blocked(build_region(workspace), point):
+        distance = check(np.array([[point, point]]), build_region(home)).clearance
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.shapes else ""
         raise ValueError(
@@ -118,13 +118,13 @@ def build_all(
         elif hasattr(kinds[home], "draw"):
             workspace = kinds[home].draw(*arguments)
         else:
-            moving[name] = kinds[home].world(*arguments, folder, partial(_steps, problem))
+            moving[name] = kinds[home].world(*arguments, folder, partial(_measure_steps, problem))
             workspace = moving[name].workspace(0)
         problems[name] = build(name, problem, workspace)
     return problems, moving
 
 
-def _steps(problem: dict, grid: Grid) -> float:
+def _measure_steps(problem: dict, grid: Grid) -> float:
     """The length of the shortest path from cell to cell between a problem's ends."""
     return shortest_paths.centre_path(build("first", problem, grid)).length
 
@@ -178,7 +178,7 @@ def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     return problems, moving
 
 
-def bounds_of(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Table":
+def compute_bounds(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Table":
     """The straight line and the exact shortest path of each problem, one row each; where it moves,
     what no robot can beat, without an octile bound.
     """
@@ -187,22 +187,26 @@ def bounds_of(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Tab
     made = []
     for name, problem in problems.items():
         world = moving.get(name)
-        least = bounds.least_way(world, problem) if world else shortest_paths.shortest_path(problem)
+        least = (
+            bounds.find_least_way(world, problem)
+            if world
+            else shortest_paths.shortest_path(problem)
+        )
         row = Bound(
             problem=name,
             straight_line=math.dist(problem.start, problem.target),
             bound=least.length,
             least_length=shortest_paths.least_length(least),
             bound_path=least.points.ravel().tolist(),
-            octile_bound=math.nan if world else _cell_bound(problem),
+            octile_bound=math.nan if world else _compute_cell_bound(problem),
         )._asdict()
         if world:
-            row |= DriveBound(bounds.least_arrival(world, problem))._asdict()
+            row |= DriveBound(bounds.bound_arrival(world, problem))._asdict()
         made.append(row)
-    return rows.table(made, Bound, *([DriveBound] if moving else []))
+    return rows.build_table(made, Bound, *([DriveBound] if moving else []))
 
 
-def _cell_bound(problem: Problem) -> float:
+def _compute_cell_bound(problem: Problem) -> float:
     """The least length, in units, of a path over free cells with straight and diagonal steps, which
     may pass between two occupied cells.
     """

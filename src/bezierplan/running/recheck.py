@@ -4,7 +4,7 @@ runs are made again.
 To judge, nothing here calls a planner: a path is read from its row, and judged on the workspace of
 the file of problems, in a process that no planner was in. What no path determines, such as a
 planner's objective, is covered by the digest of each file (`rows`), and by the runs that are made
-again (`made_again`): of drives, so is their motion.
+again (`run_again`): of drives, so is their motion.
 """
 
 import hashlib
@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from bezierplan.geometry.region import region
-from bezierplan.machine.digest import COMPUTING, library_version
+from bezierplan.geometry.region import build_region
+from bezierplan.machine.digest import COMPUTING, find_library_version
 from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
@@ -51,12 +51,12 @@ class Difference(NamedTuple):
         return plain(" ".join(f"{self.file}: {self.what}".split()))
 
 
-def _differs(file: str, run: str, column: str, old: Any, new: Any) -> Difference:
+def _describe_difference(file: str, run: str, column: str, old: Any, new: Any) -> Difference:
     """Return the difference between a stored value of a run and the one that is computed again."""
     return Difference(file, f"{run}: {column}: stored {old}, recomputed {new}")
 
 
-def told(file: str, error: Exception) -> Difference:
+def describe_error(file: str, error: Exception) -> Difference:
     """Return what an exception says of a file."""
     return Difference(file, str(error).removeprefix(f"{file}: "))
 
@@ -93,14 +93,14 @@ def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) 
     then.
     """
     done = []
-    for each in _mapped(judged, tasks, processes):
+    for each in _map(judge, tasks, processes):
         done.append(each)
         if len(done) % 10 == 0:
             say(f"{len(done)} of {len(tasks)} tables checked")
-    return merged(done)
+    return merge_verdicts(done)
 
 
-def _mapped(function: Callable[[Any], Any], items: list[Any], processes: int) -> Iterator[Any]:
+def _map(function: Callable[[Any], Any], items: list[Any], processes: int) -> Iterator[Any]:
     """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they
     would begin with a job's script anew.
     """
@@ -113,12 +113,12 @@ def _mapped(function: Callable[[Any], Any], items: list[Any], processes: int) ->
         yield from pool.map(function, items)
 
 
-def merged(verdicts: Iterable[RunsVerdict]) -> RunsVerdict:
+def merge_verdicts(verdicts: Iterable[RunsVerdict]) -> RunsVerdict:
     """Several verdicts as one."""
     return RunsVerdict(*(sum(parts[1:], parts[0]) for parts in zip(RunsVerdict(), *verdicts)))
 
 
-def sound(verdict: RunsVerdict) -> dict[str, Any]:
+def check_sound(verdict: RunsVerdict) -> dict[str, Any]:
     """What a verdict says, as plain values by name. Raises ValueError with a fault."""
     if verdict.faults:
         raise ValueError(
@@ -133,47 +133,49 @@ def write(content: dict[str, Any], file: str) -> None:
     File(file).write_text(json.dumps(content, indent=1) + "\n")
 
 
-def sha256(file: File) -> str:
+def compute_sha256(file: File) -> str:
     """The digest of a file; empty if it is not there."""
     return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
 
 
-def versions() -> dict[str, str]:
+def read_versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that compute."""
     names = sorted({name for names in COMPUTING.values() for name in names})
-    return {"python": platform.python_version()} | {name: library_version(name) for name in names}
+    return {"python": platform.python_version()} | {
+        name: find_library_version(name) for name in names
+    }
 
 
-def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+def _read_problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     try:
         return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
-        raise rows.misplaced(file, "not a whole file of problems") from None
+        raise rows.describe_misplaced(file, "not a whole file of problems") from None
 
 
-def judged(task: StoredRuns) -> RunsVerdict:
+def judge(task: StoredRuns) -> RunsVerdict:
     """Return the verdict on a task."""
     try:
-        by_name, moving = _problems(task.problems)
+        by_name, moving = _read_problems(task.problems)
     except ValueError as error:
-        return RunsVerdict((told(task.problems, error),), len(task.runs))
+        return RunsVerdict((describe_error(task.problems, error),), len(task.runs))
     faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
         try:
             table = rows.read(file)
         except ValueError as error:
-            faults.append(told(file, error))
+            faults.append(describe_error(file, error))
             continue
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-        kept, digest = rows.kept_digest(table), rows.rows_digest(table)
+        kept, digest = rows.read_digest(table), rows.compute_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         if kept != digest:
             faults.append(Difference(file, "other rows than were written"))
-        elif fault := rows.fault(table.schema, *declared):
-            faults.append(told(file, rows.misplaced(file, fault)))
+        elif fault := rows.find_fault(table.schema, *declared):
+            faults.append(describe_error(file, rows.describe_misplaced(file, fault)))
         else:
             files[file] = table.to_pylist()
-            of_file = [*_identity_faults(file, files[file], chunk)]
+            of_file = [*_find_identity_faults(file, files[file], chunk)]
             if of_file and task.changed:
                 what = f"experiment {chunk.experiment} is another one than that of these runs"
                 of_file = [Difference(task.changed, f"{what}: {File(file).parents[1]}")]
@@ -185,7 +187,7 @@ def judged(task: StoredRuns) -> RunsVerdict:
     known: dict[tuple, dict[str, tuple[Any, float]]] = {}
     for file, stored in files.items():
         for row in stored:
-            faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
+            faults += _find_row_faults(file, row, by_name[row["problem"]], moving, known)
     return RunsVerdict(
         tuple(dict.fromkeys(faults)),
         len(task.runs),
@@ -195,16 +197,16 @@ def judged(task: StoredRuns) -> RunsVerdict:
     )
 
 
-def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
+def _list_runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     """The condition and repeat of each row of a chunk, in order."""
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _identity_faults(
+def _find_identity_faults(
     file: str, entries: list[dict[str, Any]], chunk: Chunk
 ) -> Iterator[Difference]:
     """Whether a file has the rows that it is to have, and what is known before their runs."""
-    planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
+    planned = [execution.identify_run(chunk, *each) for each in _list_runs(chunk)]
     if len(entries) != len(planned):
         yield Difference(file, f"{len(entries)} rows; expected {len(planned)}")
         return
@@ -212,10 +214,10 @@ def _identity_faults(
         for name, value in known.items():
             # What a run finds out takes the place of a setting of that name.
             if name not in Outcome._fields and row.get(name) != value:
-                yield _differs(file, known["id"], name, row.get(name), value)
+                yield _describe_difference(file, known["id"], name, row.get(name), value)
 
 
-def _row_faults(
+def _find_row_faults(
     file: str,
     row: dict[str, Any],
     problem: Problem,
@@ -230,17 +232,17 @@ def _row_faults(
         else:
             key = problem.name, row["path_curve"], tuple(points)
             if key not in cache:
-                cache[key] = _path_judged(row["path_curve"], points, problem)
+                cache[key] = _judge_path(row["path_curve"], points, problem)
             again = cache[key] | {"generations": (len(row["history"]) - 1, 0.0)}
     except (ValueError, IndexError) as error:
         again = {}
-        yield _differs(file, row["id"], "path_points", "a path", error)
+        yield _describe_difference(file, row["id"], "path_points", "a path", error)
     for name, (value, tolerance) in again.items():
-        if row[name] is None or not same(row[name], value, tolerance):
-            yield _differs(file, row["id"], name, row[name], value)
+        if row[name] is None or not is_same(row[name], value, tolerance):
+            yield _describe_difference(file, row["id"], name, row[name], value)
 
 
-def same(value: float, again: float, tolerance: float) -> bool:
+def is_same(value: float, again: float, tolerance: float) -> bool:
     """Whether a number equals one that is computed again, up to a tolerance, relative and absolute;
     not a number equals itself.
     """
@@ -249,15 +251,15 @@ def same(value: float, again: float, tolerance: float) -> bool:
     )
 
 
-def _path_judged(curve: str, points: list[float], problem: Problem) -> dict[str, tuple[Any, float]]:
+def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, tuple[Any, float]]:
     """What the points of a path say, by column, with its tolerance. Raises ValueError for points
     that are none, or of no path of the problem.
     """
-    path = answer.restored(curve, points)
+    path = answer.restore_path(curve, points)
     if path is None and points:
         raise ValueError("none without a curve")
     answer.check_ends(path, problem)
-    length, check = answer.verdict(path, region(problem.workspace))
+    length, check = answer.judge_path(path, build_region(problem.workspace))
     slack = 2 * (check.tolerance if path else 0.0) + _SAME
     return {
         "length": (length, _SAME),
@@ -291,27 +293,27 @@ def _drive_judged(
 # Runs made again
 
 
-def made_again(
+def run_again(
     tasks: list[StoredRuns], wrong: Collection[str], processes: int, digest: str, every: bool
 ) -> RunsVerdict:
     """Return how many runs were made again, and what of them differs from their rows in any bit:
     the first of each file and one in `MADE_AGAIN`, which a digest chooses, or all. wrong: files
     with faults, of which nothing is made again.
     """
-    again = partial(_again, digest=digest, share=1 if every else MADE_AGAIN)
+    again = partial(_run_file_again, digest=digest, share=1 if every else MADE_AGAIN)
     files = [
         (task.problems, file, chunk)
         for task in tasks
         for file, chunk in task.runs.items()
         if not {task.problems, task.changed, file} & {*wrong}
     ]
-    return merged(_mapped(again, files, processes))
+    return merge_verdicts(_map(again, files, processes))
 
 
-def _again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
-    """`made_again` of a file."""
+def _run_file_again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
+    """`run_again` of a file."""
     problem_file, file, chunk = of
-    runs = _runs(chunk)
+    runs = _list_runs(chunk)
     numbers = [
         n
         for n, run in enumerate(runs)
@@ -320,15 +322,15 @@ def _again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
         % share
         == 0
     ]
-    made, moving = _problems(problem_file)
+    made, moving = _read_problems(problem_file)
     try:
-        remade = execution.rows_again(chunk, [runs[n] for n in numbers], made, moving)
+        remade = execution.make_rows_again(chunk, [runs[n] for n in numbers], made, moving)
     except (PlannerFailure, ValueError) as error:
         return RunsVerdict((Difference(file, f"cannot be made again: {error}"),))
     faults = []
     for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
-        for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
+        for name, value in rows.build_table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
             if repr(value) != repr(stored.get(name)):
-                faults.append(_differs(file, row["id"], name, stored.get(name), value))
+                faults.append(_describe_difference(file, row["id"], name, stored.get(name), value))
     return RunsVerdict(tuple(faults), runs=len(numbers))

@@ -14,7 +14,7 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World
 
 
-def judged(
+def judge_drive(
     ride: Ride, drew: bool, problem: Problem, world: World
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """What a drive has found, columns of `Outcome` and `DriveOutcome`; and its trace: x and y at
@@ -23,8 +23,8 @@ def judged(
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
-    path = driven(ride)
-    done = ways.lengths(points)
+    path = trace_path(ride)
+    done = ways.measure_lengths(points)
     travelled, collision = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
@@ -87,19 +87,19 @@ def judged(
     return outcome._asdict() | driving._asdict(), trace
 
 
-def driven(ride: Ride) -> Path:
+def trace_path(ride: Ride) -> Path:
     """The path of a drive, without its waits."""
-    points = ways.way(ride.motion.points).points
+    points = ways.build_way(ride.motion.points).points
     return Path("polyline", points if len(points) > 1 else np.repeat(points, 2, axis=0))
 
 
 def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
-    """`cells.least_plan` for the last plan of a drive; nan among circles."""
+    """`cells.bound_plan` for the last plan of a drive; nan among circles."""
     if not isinstance(world, ChangingCells):
         return math.nan
     time = ride.plans[-1].time
-    return cells.least_plan(
-        motion_check.between(ride.motion, 0.0, time), world.workspace(time), problem.target
+    return cells.bound_plan(
+        motion_check.cut_motion(ride.motion, 0.0, time), world.workspace(time), problem.target
     )
 
 

@@ -24,7 +24,7 @@ _TYPES = {
 }
 
 
-def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
+def build_table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
     """Rows as a table: declared columns, which every row must have, in their types, others in that
     of their values.
 
@@ -44,7 +44,7 @@ def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
     )
 
 
-def fault(schema: pa.Schema, *declared: type) -> str:
+def find_fault(schema: pa.Schema, *declared: type) -> str:
     """The first declared column that a file lacks or has in another type, in words, or empty."""
     for name, (kind, _) in columns.declared(*declared).items():
         if name not in schema.names:
@@ -57,7 +57,7 @@ def fault(schema: pa.Schema, *declared: type) -> str:
 
 def write(table: pa.Table, file: str) -> None:
     """Write a table with the digest of its rows."""
-    digest = {_DIGEST: rows_digest(table)}
+    digest = {_DIGEST: compute_digest(table)}
     parquet.write_table(table.replace_schema_metadata((table.schema.metadata or {}) | digest), file)
 
 
@@ -72,39 +72,39 @@ def read(file: str, threads: bool = True) -> pa.Table:
         with parquet.ParquetFile(content, pre_buffer=False) as source:
             return source.read(use_threads=threads)
     except (OSError, pa.ArrowException):
-        raise misplaced(file, "not a whole Parquet file") from None
+        raise describe_misplaced(file, "not a whole Parquet file") from None
 
 
-def misplaced(file: str, what: str) -> ValueError:
+def describe_misplaced(file: str, what: str) -> ValueError:
     """The exception for a file of results that is not what belongs in its place."""
     return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
-def kept_digest(table: pa.Table) -> str:
+def read_digest(table: pa.Table) -> str:
     """Return the digest of its rows with which a table was written; empty without one."""
     return (table.schema.metadata or {}).get(_DIGEST, b"").decode()
 
 
-def rows_digest(table: pa.Table) -> str:
+def compute_digest(table: pa.Table) -> str:
     """A hash over a table's columns in order of name: of all bits, whatever the file's layout."""
     digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()
         digest.update(f"{name} {len(column)} ".encode())
-        for part in _parts(column):
+        for part in _yield_parts(column):
             digest.update(part)
     return digest.hexdigest()[:16]
 
 
-def _parts(column: pa.Array) -> list[bytes]:
+def _yield_parts(column: pa.Array) -> list[bytes]:
     """The content of a column as bytes."""
     if pa.types.is_list(column.type):
         values = column.flatten()
         # Without values, any type of them is the same content.
         return [
             b"list",
-            *_parts(column.value_lengths()),
-            *(_parts(values) if len(values) else [b"[]"]),
+            *_yield_parts(column.value_lengths()),
+            *(_yield_parts(values) if len(values) else [b"[]"]),
         ]
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         missing = column.is_null().to_numpy(zero_copy_only=False)

@@ -24,10 +24,10 @@ from bezierplan.analysis.results import select
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
-from bezierplan.places import relative
-from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
+from bezierplan.places import shorten_path
+from bezierplan.planners import is_file, list_planners, load_planner, read_settings
 from bezierplan.running import columns, problems
-from bezierplan.running.execution import settings_in
+from bezierplan.running.execution import resolve_settings
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import Model, identity, named, one_or_list, parsed
@@ -111,7 +111,7 @@ class Checks:
     def check(self) -> list[str]:
         """All faults, one line each."""
         study = self.study
-        with self.at(relative(study.folder / "experiments.yaml")):
+        with self.at(shorten_path(study.folder / "experiments.yaml")):
             self.each("methods", study.methods, self.method)
             # A planner that has a fault may have any settings.
             self.complete = not self.invalid
@@ -135,25 +135,25 @@ class Checks:
                     raise Fault(f"{file}: no table names it; expected published: {file.name}")
             if file := study.verdict_file():
                 verdict.read(file)
-        with self.at(relative(study.folder / "artefacts.yaml")):
+        with self.at(shorten_path(study.folder / "artefacts.yaml")):
             self.each("tables", study.tables, self.table)
             self.each("figures", study.figures, self.figure)
             self.prints()
-        with self.at(relative(study.folder / "layout.yaml")):
+        with self.at(shorten_path(study.folder / "layout.yaml")):
             check_all(study.layout, {**study.tables, **study.figures}, "layout")
         for file, section, entries, work in (
             ("claims", "claims", [(e.id, e) for e in study.claims], self.claim),
             ("assumptions", "assumptions", [(e.id, e) for e in study.assumptions], self.assumption),
             ("assumptions", "readings", [(e.folder, e) for e in study.readings], self.reading),
         ):
-            with self.at(relative(study.folder / f"{file}.yaml")):
+            with self.at(shorten_path(study.folder / f"{file}.yaml")):
                 # Results are looked up by it.
                 names = [name for name, _ in entries]
                 for name in names:
                     if names.count(name) > 1:
                         raise Fault(f"{section}: {name}: another one has this id already")
                 self.each(section, dict(entries), work)
-        with self.at(relative(study.folder / "assumptions.yaml"), "fitted"):
+        with self.at(shorten_path(study.folder / "assumptions.yaml"), "fitted"):
             check_all(study.fitted.keys() - self.invalid, study.with_published(), "table")
             for table, fitted in study.fitted.items():
                 check_all(fitted, [each.metric for each in study.tables[table].values], table)
@@ -168,10 +168,10 @@ class Checks:
         if is_file(method.planner):
             inside(self.study.folder, method.planner, location)
         else:
-            check_known(method.planner, known_planners(), "planner", f"{method.planner}.py")
-        module = interface.loaded(self.study.planner(name), location)
+            check_known(method.planner, list_planners(), "planner", f"{method.planner}.py")
+        module = interface.load_planner_module(self.study.planner(name), location)
         extra = getattr(module, "extra", ())
-        for taken in RESERVED.intersection([*planner_settings(module), *extra]):
+        for taken in RESERVED.intersection([*read_settings(module), *extra]):
             raise Fault(f"{location}: its {taken} is a column of results; give it another name")
         interface.refuse_unknown(module, method.settings, "settings")
         if (
@@ -207,7 +207,7 @@ class Checks:
         own = [each.problems for each in study.assumptions if each.id in study.values]
         for problem in {"", *itertools.chain.from_iterable(own)}:
             settings = study.resolved(name) | study.changed(name, problem)
-            interface.check_settings(planner_module(study.planner(name)), settings, "settings")
+            interface.check_settings(load_planner(study.planner(name)), settings, "settings")
 
     def workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
@@ -274,7 +274,7 @@ class Checks:
         under every condition.
         """
         study, where = self.study, f"methods: {method}"
-        module = planner_module(study.planner(method))
+        module = load_planner(study.planner(method))
         for problem in experiment.problems:
             kind = study.kind_of(problem)
             if kind not in getattr(module, "workspaces", (kind,)):
@@ -284,7 +284,7 @@ class Checks:
                     f"({problem})"
                 )
             if hasattr(module, "serves"):
-                interface.asked(module.serves, f"{where}: problem {problem}", self.built(problem))
+                interface.ask(module.serves, f"{where}: problem {problem}", self.built(problem))
         if not self.complete or method in self.invalid:
             return
         described = job(study, name, method, "full", 0)
@@ -296,7 +296,7 @@ class Checks:
         for condition in described._replace(problems=dict(apart.values())).conditions():
             varied = f"vary: {condition.name}: {method}" if condition.values else where
             interface.check_settings(
-                module, settings_in(described, condition), f"{varied}: settings"
+                module, resolve_settings(described, condition), f"{varied}: settings"
             )
 
     # Names defined elsewhere

@@ -7,8 +7,8 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
-from bezierplan.places import relative
-from bezierplan.running.inputs import PAPER, tree
+from bezierplan.places import shorten_path
+from bezierplan.running.inputs import PAPER, choose_tree
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.artefacts import ArtefactsFile
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
@@ -61,14 +61,14 @@ class Study(Experiments, ArtefactsFile):
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
-        return sorted({relative(file) for each in named for file in each})
+        return sorted({shorten_path(file) for each in named for file in each})
 
     def named(self, folder: str) -> list[str]:
         """Names of the tables and figures of a tree: `paper`, those that the paper numbers; a study
         without such has all of its own there. `beyond`: the others.
         """
         names = [*self.tables, *self.figures]
-        numbered = [name for name in names if tree(name) == PAPER] or names
+        numbered = [name for name in names if choose_tree(name) == PAPER] or names
         return numbered if folder == PAPER else [name for name in names if name not in numbered]
 
     def artefact(self, name: str) -> TableEntry | Figure:
@@ -82,7 +82,7 @@ class Study(Experiments, ArtefactsFile):
             endings.append("comparison.csv")
         if name in self.with_published():
             endings += ["published.csv", "wholes.csv"]
-        return [f"{tree(name)}/{name}.{ending}" for ending in endings]
+        return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
     def compared(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; the others have none."""
@@ -100,7 +100,7 @@ class Study(Experiments, ArtefactsFile):
     def published_file(self, table: str) -> str | None:
         """The file of a table's published numbers relative to the working folder, or None."""
         file = getattr(self.whole(table), "published", None)
-        return file and relative(self.folder / "published" / file)
+        return file and shorten_path(self.folder / "published" / file)
 
     def reconstructed(self, table: Pivot) -> bool:
         """Whether runs of a table are on a map that the paper does not print."""
@@ -114,7 +114,7 @@ class Study(Experiments, ArtefactsFile):
         """The methods of an experiment in a table or figure that selects none: without variants,
         where it is one of the paper's.
         """
-        of_paper = tree(artefact) == PAPER or artefact in self.with_published()
+        of_paper = choose_tree(artefact) == PAPER or artefact in self.with_published()
         methods = self.experiments[experiment].methods
         return [name for name in methods if not (of_paper and name in self.variants())]
 
@@ -125,11 +125,11 @@ class Study(Experiments, ArtefactsFile):
     def verdict_file(self) -> str | None:
         """Its sentences of what follows, relative to the working folder, or None."""
         file = self.folder / "verdict.yaml"
-        return relative(file) if file.is_file() else None
+        return shorten_path(file) if file.is_file() else None
 
     def published_files(self) -> list[str]:
         """All files of published numbers, relative to the working folder."""
-        return [relative(file) for file in sorted((self.folder / "published").glob("*.csv"))]
+        return [shorten_path(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 
     def variants(self) -> dict[str, str]:
         """Method -> the method whose published numbers it is compared with."""

@@ -7,9 +7,9 @@ import pandas as pd
 
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.results import select
-from bezierplan.planners import planner_module
+from bezierplan.planners import load_planner
 from bezierplan.running.columns import DRIVE_JOINED, DRIVE_RESULTS, JOINED, PLANNED, RESULTS
-from bezierplan.running.execution import identity
+from bezierplan.running.execution import identify_run
 from bezierplan.schema.checked import Fault, check_known
 from bezierplan.schema.model import is_number, one_or_list
 from bezierplan.study.definition import Study
@@ -115,9 +115,9 @@ def design(study: Study, experiment: str) -> Design:
     """The runs of an experiment."""
     methods, moves = study.methods_of(experiment), study.moves(experiment)
     chunks = [job(study, experiment, method, "full", 0) for method in methods]
-    rows = [identity(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
+    rows = [identify_run(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
     frame = pd.DataFrame(rows, dtype=object).drop(columns="id")
-    planners = () if moves else (planner_module(study.planner(method)) for method in methods)
+    planners = () if moves else (load_planner(study.planner(method)) for method in methods)
     reported = {name: "reported" for each in planners for name in getattr(each, "extra", ())}
     joined = JOINED | (DRIVE_RESULTS | DRIVE_JOINED if moves else reported)
     problems = study.experiments[experiment].problems

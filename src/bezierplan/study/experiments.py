@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from bezierplan.machine.modules import code_of
-from bezierplan.places import relative
-from bezierplan.planners import is_file, planner_module, planner_settings
+from bezierplan.machine.modules import find_code
+from bezierplan.places import shorten_path
+from bezierplan.planners import is_file, load_planner, read_settings
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema import checked
@@ -294,15 +294,15 @@ class Experiments(ExperimentsFile):
         """
         for name in content["baselines"].keys() & content["methods"]:
             raise Fault(
-                f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this "
-                "name already"
+                f"{shorten_path(folder / 'experiments.yaml')}: baselines: {name}: a method has "
+                "this name already"
             )
         content = content | {"methods": content["methods"] | content["baselines"]}
         return cls.model_construct(key=folder.resolve().name, folder=folder, **content)
 
     def accepted(self, method: str) -> dict[str, Any]:
         """Settings accepted by a method's planner, with their annotations."""
-        return planner_settings(planner_module(self.planner(method)))
+        return read_settings(load_planner(self.planner(method)))
 
     @property
     def of_planners(self) -> dict[str, dict[str, Any]]:
@@ -331,11 +331,11 @@ class Experiments(ExperimentsFile):
     def planner(self, method: str) -> str:
         """The planner of a method: a name, or the path of a file relative to the working folder."""
         planner = self.methods[method].planner
-        return relative(self.folder / planner) if is_file(planner) else planner
+        return shorten_path(self.folder / planner) if is_file(planner) else planner
 
     def draws(self, method: str) -> bool:
         """Whether a method uses random numbers: if not, one run stands for all repeats."""
-        return not getattr(planner_module(self.planner(method)), "deterministic", False)
+        return not getattr(load_planner(self.planner(method)), "deterministic", False)
 
     def methods_of(self, experiment: str) -> list[str]:
         """Methods of an experiment, followed by the baselines that join: whose planner supports all
@@ -344,7 +344,7 @@ class Experiments(ExperimentsFile):
         content, moves = self.experiments[experiment], self.moves(experiment)
         kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
         for name, baseline in self.baselines.items():
-            module = planner_module(self.planner(name))
+            module = load_planner(self.planner(name))
             varied = content.vary.keys() & self.accepted(name).keys()
             served = kinds <= set(getattr(module, "workspaces", kinds))
             if served and not varied and moves == bool(baseline.policy):
@@ -406,14 +406,14 @@ class Experiments(ExperimentsFile):
 
     def code_for(self, *parts: str) -> list[str]:
         """The modules of some parts of its code (`machine.modules`) that it has."""
-        code = code_of(self.key, relative(self.folder))
+        code = find_code(self.key, shorten_path(self.folder))
         return [code[part] for part in parts if part in code]
 
 
 def read(folder: Path) -> Experiments:
     """What the file of a study defines. Raises Fault."""
     file = folder / "experiments.yaml"
-    content = parsed(ExperimentsFile, checked.read(file, relative(file)), relative(file))
+    content = parsed(ExperimentsFile, checked.read(file, shorten_path(file)), shorten_path(file))
     return Experiments.of(folder, dict(content))
 
 

@@ -24,7 +24,7 @@ from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.jobs import FigureFiles, Latex
-from bezierplan.places import relative
+from bezierplan.places import shorten_path
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Shows
@@ -44,7 +44,7 @@ def problems(study: Study, scale: str, experiment: str) -> Problems:
     """The problems of an experiment."""
     described = problems_job(study, experiment, scale)
     maps = study.maps(described.workspaces)
-    return Problems(described, relative(study.folder), sources=maps)
+    return Problems(described, shorten_path(study.folder), sources=maps)
 
 
 def bounds(study: Study, scale: str, experiment: str) -> Bounds:
@@ -264,7 +264,7 @@ def figure(study: Study, scale: str, figure: str) -> FigureFiles:
             for name in spec.rerun
         },
         unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
-        folder=relative(study.folder),
+        folder=shorten_path(study.folder),
         alternatives=_every_alternative(study) if spec.claims else [],
         sources=[
             *study.maps([*spec.workspaces, *problems.workspaces]),

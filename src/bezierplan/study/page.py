@@ -12,7 +12,7 @@ from bezierplan.figures.page.page_job import (
     PageJob,
     StudyView,
 )
-from bezierplan.machine.digest import content_digest, docstring, module_of
+from bezierplan.machine.digest import compute_content_digest, name_module, read_docstring
 from bezierplan.places import STUDIES
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
@@ -93,7 +93,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             name: MethodView(
                 study.planner(name),
                 study.resolved(name),
-                docstring(module_of(study.planner(name))),
+                read_docstring(name_module(study.planner(name))),
             )
             for name in study.methods
         },
@@ -121,7 +121,7 @@ def settings_of(study: Study) -> list[tuple[str, str, str]]:
     settings = {method: study.resolved(method) for method in study.methods}
     for name, workspace in study.workspaces.items():
         maps = study.maps([name])
-        content = {"content of the map": content_digest(*maps)} if maps else {}
+        content = {"content of the map": compute_content_digest(*maps)} if maps else {}
         settings[f"workspace {name}"] = workspace.plain() | content
     for name, problem in study.problems.items():
         settings[f"problem {name}"] = problem.plain()

@@ -13,7 +13,7 @@ from typing import Any
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.table_kinds import Pivot
-from bezierplan.places import relative
+from bezierplan.places import shorten_path
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import is_number
 from bezierplan.study.definition import Study
@@ -30,7 +30,7 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     """A csv file: its rows by the number of the line where each ends, with a header of different
     names. Raises Fault, with file and line.
     """
-    location = relative(file)
+    location = shorten_path(file)
     reader = csv.DictReader(io.StringIO(text_of(file, location), newline=""), strict=True)
     lines = {}
     try:
@@ -57,7 +57,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
     that does not fit its table, and for what does not fit it in the table.
     """
     file = study.folder / "published" / table.published
-    here, lines = relative(file), read(file)
+    here, lines = shorten_path(file), read(file)
     header = [*next(iter(lines.values()))]
     for column in COLUMNS:
         if column not in header:

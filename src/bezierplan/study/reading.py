@@ -15,8 +15,8 @@ from typing import Any
 
 import pydantic
 
-from bezierplan.machine.modules import code_of
-from bezierplan.places import PACKAGE, STUDIES, TREE, cache_folder, relative
+from bezierplan.machine.modules import find_code
+from bezierplan.places import PACKAGE, STUDIES, TREE, find_cache_folder, shorten_path
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_all, closest
 from bezierplan.schema.model import Model, named, parsed, sound_part
@@ -48,7 +48,7 @@ def read_config(config: Mapping[str, Any]) -> Folders:
             known = [location.parent.name for location in STUDIES.glob("*/experiments.yaml")]
             raise Fault(
                 f"{location}: studies: {name}: no experiments.yaml in "
-                f"{relative(folder)}{closest(name, known)}"
+                f"{shorten_path(folder)}{closest(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
     known = [folder.resolve().name for folder in (*folders, *STUDIES.glob("*"))]
@@ -137,8 +137,8 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
                 stamp.touch()
         if study.key in studies:
             raise Fault(
-                f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
-                "folder"
+                f"{shorten_path(folder)}: a study of the name {study.key} is there already; rename "
+                "the folder"
             )
         studies[study.key] = study
     return studies
@@ -150,7 +150,9 @@ def _stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
     package and its libraries.
     """
     parts = [repr(changes), *_package(), str(folder.resolve()), *_contents(folder)]
-    return cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+    return (
+        find_cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+    )
 
 
 _WRITTEN = frozenset(("__pycache__", "results", ".snakemake"))
@@ -190,7 +192,7 @@ def _load_code(folder: Path) -> None:
     """Load the code of the study in a folder, so that its metrics are known. Raises Fault."""
     from bezierplan.analysis import study_code
 
-    for name in code_of(folder.resolve().name, relative(folder)).values():
+    for name in find_code(folder.resolve().name, shorten_path(folder)).values():
         try:
             study_code.functions([name])
         except (Exception, SystemExit) as error:  # a user's file can fail in any way
@@ -209,8 +211,8 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
         file = folder / f"{name}.yaml"
         try:
             if name == "experiments" or file.exists():
-                text = checked.read(file, relative(file))
-                sound, lines, left = sound_part(model, text, relative(file))
+                text = checked.read(file, shorten_path(file))
+                sound, lines, left = sound_part(model, text, shorten_path(file))
                 content |= dict(sound)
                 faults += lines
                 invalid += left
@@ -233,7 +235,7 @@ def _strange(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
     known = [*(f"{name}.yaml" for name in FILES), "verdict.yaml"]
     maps = [name for home in workspaces.values() for _, what, name in named(home) if what == "file"]
     return [
-        f"{relative(file)}: no file of a study{closest(file.name, known)}"
+        f"{shorten_path(file)}: no file of a study{closest(file.name, known)}"
         for file in sorted(each for each in folder.glob("*.y*ml*") if each.suffix != ".yaml~")
         if file.name not in (*known, *maps)
     ]
@@ -244,7 +246,7 @@ def check_names(studies: Mapping[str, Study]) -> None:
     rules = [file.read_text() for file in (TREE / "workflow" / "rules").glob("*.smk")]
     targets = {"default", *re.findall(r"^(?:use )?rule (?:\w+ as )?(\w+)", "\n".join(rules), re.M)}
     for key, study in studies.items():
-        location = relative(study.folder)
+        location = shorten_path(study.folder)
         check_name(key, f"{location}: {key}")
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
             raise Fault(

@@ -49,6 +49,6 @@ def _again(chunk: Chunk, condition: Condition, repeat: int, study: Experiments) 
     made, moving = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     name = condition.problem
     named, met = {name: made[name]}, {name: moving[name]} if moving else {}
-    table = pd.DataFrame(execution.rows_again(chunk, [(condition, repeat)], named, met))
-    joined = results.joined(table, named, problems.bounds_of(named, met).to_pandas())
+    table = pd.DataFrame(execution.make_rows_again(chunk, [(condition, repeat)], named, met))
+    joined = results.joined(table, named, problems.compute_bounds(named, met).to_pandas())
     return joined._replace(worlds=met, jobs={chunk.method: chunk})

@@ -10,7 +10,7 @@ from typing import Any
 
 from bezierplan.analysis.jobs import Job, Verification
 from bezierplan.analysis.outcome.proof import LIST, PAGE
-from bezierplan.places import relative
+from bezierplan.places import shorten_path
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import alternatives, jobs, page, reading
@@ -121,7 +121,7 @@ def verified(places: Studies, scale: str, root: str, files: Collection[str]) -> 
         if own == [PAGE] or not {*own}.isdisjoint(files)
     ]
     words = {
-        place: os.path.join(".", relative(study.folder))
+        place: os.path.join(".", shorten_path(study.folder))
         for place, study in places.items()
         if place == study.key
     }

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled, inlined
+from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square
@@ -93,7 +93,7 @@ def _ground(
     return bare._replace(encounters=encounters, energy=energy)
 
 
-@compiled
+@compile_kernel
 def _tables(ground):
     cells = ground.occupied.size
     encounters, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
@@ -107,7 +107,7 @@ def _tables(ground):
     return encounters, energy
 
 
-@inlined
+@compile_inline
 def obstacles_on(ground: Ground, start: int, end: int) -> int:
     """Number of occupied cells that the edge between two cells meets, including the two (meledje,
     eq. 3: beta).
@@ -128,7 +128,7 @@ def obstacles_along(path: np.ndarray, ground: Ground) -> int:
     return encounters
 
 
-@inlined
+@compile_inline
 def edge_energy(ground: Ground, start: int, end: int) -> float:
     """Cost of the edge from one cell to another: its length plus its climb divided by the friction
     (meledje, eq. 2: epsilon).
@@ -201,7 +201,7 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
     return energy, np.array(path[::-1])
 
 
-@compiled
+@compile_kernel
 def _cheapest(ground, start, target):
     """Minimum energy from start to target, and the cell before each cell on its way, by A* with the
     straight distance.

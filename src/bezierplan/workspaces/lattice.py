@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces.grid import Grid
 
 Corners = IntEnum("Corners", {"free": 2, "one": 1, "none": 0})
@@ -118,7 +118,7 @@ def distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray:
     return _distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
 
 
-@compiled
+@compile_kernel
 def _distances(walls, row, column, steps):
     """Return the `distances` within a frame of occupied cells (Dijkstra)."""
     far = np.full(walls.shape, np.inf)

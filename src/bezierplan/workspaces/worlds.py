@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.arrays import freeze
 from bezierplan.workspaces.circles import Circles
@@ -98,7 +98,7 @@ class ChangingCells:
 World = MovingCircles | ChangingCells
 
 
-@compiled
+@compile_kernel
 def positions(centres, velocities, walls, step):
     """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and
     highest x, lowest and highest y.

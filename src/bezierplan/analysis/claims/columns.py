@@ -8,9 +8,9 @@ claims that of the decisive one. `Judged`: how sure a claim's verdict is, and wh
 `Limits`: what a comparison could find, and the printed numbers. `Notes`: what a reader should know.
 """
 
-from bezierplan.running.columns import declared, tables
+from bezierplan.running.columns import declared, read_tables
 
-Named, Sentence, Compared, Effect, Judged, Limits, Notes = tables(__file__)
+Named, Sentence, Compared, Effect, Judged, Limits, Notes = read_tables(__file__)
 
 TABLES = {
     "claims": (Named, Sentence, Effect, Judged, Notes),

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import bezierplan
 from bezierplan.places import TREE
-from bezierplan.running.recheck import Difference, sha256
+from bezierplan.running.recheck import Difference, compute_sha256
 
 LIST, PAGE = "verified.json", "index.html"
 """The file that lists the digests of all others, and the page that names its own."""
@@ -60,7 +60,7 @@ def listed(folder: Path) -> Listed:
         found = Listed(dict(content["sha256"]), accounts, dict(content["versions"]))
     except (KeyError, TypeError, ValueError):
         return Listed({}, {}, {}, "not a list of digests")
-    if text and sha256(file) not in text:
+    if text and compute_sha256(file) not in text:
         return found._replace(fault=f"not the list that {PAGE} names")
     return found
 
@@ -69,7 +69,7 @@ def unlisted(folder: Path, listed: Listed) -> list[Difference]:
     """Return the files of a scale that are not what its list says; the list, if it is wrong."""
     if listed.fault:
         return [Difference(str(folder / LIST), listed.fault)]
-    now = {name: sha256(folder / name) for name in listed.digests}
+    now = {name: compute_sha256(folder / name) for name in listed.digests}
     return [
         Difference(str(folder / name), "was changed since" if now[name] else "is not there")
         for name, digest in listed.digests.items()
@@ -133,7 +133,8 @@ def differing(
         faults += [
             Difference(str(folder / name), "made again, it is another one")
             for name in files
-            if (again / name).is_file() and sha256(again / name) != sha256(folder / name)
+            if (again / name).is_file()
+            and compute_sha256(again / name) != compute_sha256(folder / name)
         ]
     return len(files), faults
 

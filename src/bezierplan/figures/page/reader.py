@@ -16,7 +16,7 @@ from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
-from bezierplan.running.inputs import tree
+from bezierplan.running.inputs import choose_tree
 
 Row = dict[str, Any]
 
@@ -135,8 +135,8 @@ def _artefact(study: str, name: str, artefact: Any) -> Row:
     return artefact._asdict() | {
         "name": name,
         "address": address(study, name),
-        "stem": f"{study}/{tree(name)}/{name}",
-        "of_paper": tree(name) == "paper",
+        "stem": f"{study}/{choose_tree(name)}/{name}",
+        "of_paper": choose_tree(name) == "paper",
     }
 
 

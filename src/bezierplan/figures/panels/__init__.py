@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from bezierplan.machine.modules import kinds_in, module
+from bezierplan.machine.modules import find_kinds, load_module
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
@@ -268,12 +268,12 @@ def only(runs: pd.DataFrame, column: str) -> Any:
 
 
 def _places() -> dict[str, str]:
-    return kinds_in("figures/panels", "panels")
+    return find_kinds("figures/panels", "panels")
 
 
 def kind_module(name: str) -> ModuleType:
     """The file of a kind of panel. Raises KeyError if there is none."""
-    return module(_places()[name])
+    return load_module(_places()[name])
 
 
 def panel_of(keys: dict[str, Any]) -> Panel:

@@ -43,7 +43,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     place = results.problems[problem], results.worlds[problem]
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
-        ride, verdict = execution.redriven(results.jobs[run["method"]], run, *place)
+        ride, verdict = execution.drive_again(results.jobs[run["method"]], run, *place)
         columns = {
             "problem": problem,
             "method": run["method"],

@@ -78,7 +78,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
-    ride, verdict = execution.redriven(results.jobs[run["method"]], run, problem, world)
+    ride, verdict = execution.drive_again(results.jobs[run["method"]], run, problem, world)
     frame = moment(world, problem, ride, verdict, options.at)
     return frame.assign(
         problem=run["problem"],
@@ -92,8 +92,8 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     """Rows of a moment, a share of the time of a drive."""
     import pandas as pd
 
-    from bezierplan.running.simulation.motion_check import between
-    from bezierplan.running.simulation.ways import polyline
+    from bezierplan.running.simulation.motion_check import cut_motion
+    from bezierplan.running.simulation.ways import build_polyline
     from bezierplan.workspaces.worlds import MovingCircles
 
     time = at * ride.motion.times[-1]
@@ -110,14 +110,14 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     else:
         grid = world.workspace(time)
         parts, bounds = [workspaces.parts(grid)], grid.bounds
-    driven = between(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
+    driven = cut_motion(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
     places = [("way", driven), ("robot", driven[-1:])]
     plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
     for number, plan in enumerate(plans):
-        line = polyline(plan.path, _FINE * (bounds[1] - bounds[0]))
+        line = build_polyline(plan.path, _FINE * (bounds[1] - bounds[0]))
         places.append(("plan" if number == len(plans) - 1 else "dropped", line))
     if verdict.collision_at <= time:
-        hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
+        hit = cut_motion(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         places.append(("collision", hit))
     for number, (part, points) in enumerate(places):
         own = workspaces.places({part: points})

@@ -18,22 +18,22 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry.checker.certificates import is_free
-from bezierplan.geometry.checker.collision import first_collision
+from bezierplan.geometry.checker.collision import find_first_collision
 from bezierplan.geometry.checker.distances import (
     CLEARANCE_TOLERANCE,
     DEPTH_TOLERANCE,
-    largest_depth,
-    least_clearance,
+    find_largest_depth,
+    find_least_clearance,
 )
 from bezierplan.geometry.checker.hulls import (
     LARGEST_COORDINATE,
     LARGEST_DEGREE,
     TOLERANCE,
-    resolution,
+    choose_resolution,
 )
 from bezierplan.geometry.region import CircleRegion, Region, from_origin
 
-__all__ = ["TOLERANCE", "Check", "check", "first_collision", "is_free", "refuse_unfit"]
+__all__ = ["TOLERANCE", "Check", "check", "find_first_collision", "is_free", "refuse_unfit"]
 
 # Each halving accumulates as many rounding errors as the degree. Above this degree coordinates must
 # be smaller, so that the sum of the errors does not grow further.
@@ -100,7 +100,7 @@ def check(pieces: np.ndarray, region: Region) -> Check:
     --------
     A straight line runs into an obstacle, a parabola goes around it:
 
-    >>> from bezierplan.geometry.region import region
+    >>> from bezierplan.geometry.region import build_region
     >>> from bezierplan.workspaces.grid import from_lines
     >>> room = region(from_lines(["....", ".##.", "...."], cell=1.0, unit="m"))
     >>> straight = check(np.array([[[0.5, 0.5], [3.5, 2.5]]]), room)
@@ -113,22 +113,22 @@ def check(pieces: np.ndarray, region: Region) -> Check:
     pieces = np.ascontiguousarray(pieces, dtype=float)
     refuse_unfit(pieces)
     pieces = from_origin(pieces, region)
-    collision_at, intervals = first_collision(pieces, region)
+    collision_at, intervals = find_first_collision(pieces, region)
     if collision_at < math.inf:
-        depth = largest_depth(pieces, region, collision_at)
+        depth = find_largest_depth(pieces, region, collision_at)
         return Check(
             False,
             collision_at,
             depth,
             0.0,
-            max(DEPTH_TOLERANCE * depth, resolution(pieces.reshape(-1, 2))),
+            max(DEPTH_TOLERANCE * depth, choose_resolution(pieces.reshape(-1, 2))),
             intervals,
         )
     if isinstance(region, CircleRegion):
         centres, radii = region.centres, region.radii
     else:
         centres, radii = np.empty((0, 2)), np.empty(0)
-    clearance = least_clearance(pieces, region.edges, region.bins, centres, radii)
+    clearance = find_least_clearance(pieces, region.edges, region.bins, centres, radii)
     return Check(True, math.nan, 0.0, clearance, CLEARANCE_TOLERANCE, intervals)
 
 

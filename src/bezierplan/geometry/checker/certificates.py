@@ -14,11 +14,11 @@ from bezierplan.geometry.checker.hulls import (
     BINOMIAL,
     LARGEST_COORDINATE,
     TOLERANCE,
-    box,
-    bulge_of,
-    direction,
-    distance_to_segment,
-    range_along,
+    bound_box,
+    choose_direction,
+    measure_bulge,
+    measure_distance_to_segment,
+    measure_range_along,
 )
 from bezierplan.geometry.region import CircleRegion, GridRegion, PolygonRegion
 from bezierplan.kernels import allocation_free
@@ -54,12 +54,12 @@ def is_free(points, region):
     return _IS_FREE[type(region)](points, region)
 
 
-def depth_at(x, y, region):
+def measure_depth(x, y, region):
     """Depth of a point in the blocked region, 0 outside."""
     return _DEPTH_AT[type(region)](x, y, region)
 
 
-def depth_bound(points, region):
+def bound_depth(points, region):
     """Upper bound of the depth of the curve of some control points."""
     return _DEPTH_BOUND[type(region)](points, region)
 
@@ -69,7 +69,7 @@ def depth_bound(points, region):
 
 
 @allocation_free
-def _element(x: float, cell: float, last: int) -> int:
+def _find_element(x: float, cell: float, last: int) -> int:
     """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in
     a cell; the outside is 0 and `last`.
     """
@@ -81,7 +81,7 @@ def _element(x: float, cell: float, last: int) -> int:
 
 
 @allocation_free
-def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
+def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
     """Lowest and highest coordinate of the cells that touch an element: one cell for even indices,
     two for odd ones.
     """
@@ -91,7 +91,9 @@ def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
 
 
 @allocation_free
-def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, right: int) -> int:
+def _count_blocked_elements(
+    counts: np.ndarray, bottom: int, top: int, left: int, right: int
+) -> int:
     """Number of blocked elements in a range of the doubled grid, both ends inclusive."""
     return (
         counts[top + 1, right + 1]
@@ -103,36 +105,41 @@ def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, righ
 
 def _is_blocked_in_grid(x, y, region):
     rows, columns = region.blocked.shape
-    return region.blocked[_element(y, region.cell, rows - 1), _element(x, region.cell, columns - 1)]
+    return region.blocked[
+        _find_element(y, region.cell, rows - 1), _find_element(x, region.cell, columns - 1)
+    ]
 
 
 def _is_free_in_grid(points, region):
     rows, columns = region.blocked.shape
     cell = region.cell
-    x_low, x_high, y_low, y_high = box(points)
-    left, right = _element(x_low, cell, columns - 1), _element(x_high, cell, columns - 1)
-    bottom, top = _element(y_low, cell, rows - 1), _element(y_high, cell, rows - 1)
-    if _blocked_elements(region.counts, bottom, top, left, right) == 0:
+    x_low, x_high, y_low, y_high = bound_box(points)
+    left, right = _find_element(x_low, cell, columns - 1), _find_element(x_high, cell, columns - 1)
+    bottom, top = _find_element(y_low, cell, rows - 1), _find_element(y_high, cell, rows - 1)
+    if _count_blocked_elements(region.counts, bottom, top, left, right) == 0:
         return True
 
     # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
     # seam, the range extends as far beyond the hull as a hull may reach into a rectangle.
     reach = 2.0 * TOLERANCE
-    left = _element(x_low - reach, cell, columns - 1)
-    right = _element(x_high + reach, cell, columns - 1)
-    bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
+    left = _find_element(x_low - reach, cell, columns - 1)
+    right = _find_element(x_high + reach, cell, columns - 1)
+    bottom, top = (
+        _find_element(y_low - reach, cell, rows - 1),
+        _find_element(y_high + reach, cell, rows - 1),
+    )
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False
-    along_x, along_y = direction(points)
-    across_low, across_high = range_along(points, -along_y, along_x)
+    along_x, along_y = choose_direction(points)
+    across_low, across_high = measure_range_along(points, -along_y, along_x)
     for row in range(bottom, top + 1):
-        rectangle_bottom, rectangle_top = _sides(row, cell, rows - 1)
+        rectangle_bottom, rectangle_top = _find_sides(row, cell, rows - 1)
         if y_high <= rectangle_bottom + reach or y_low >= rectangle_top - reach:
             continue
         for column in range(left, right + 1):
             if not region.blocked[row, column]:
                 continue
-            rectangle_left, rectangle_right = _sides(column, cell, columns - 1)
+            rectangle_left, rectangle_right = _find_sides(column, cell, columns - 1)
             if x_high <= rectangle_left + reach or x_low >= rectangle_right - reach:
                 continue
             x = 0.5 * (rectangle_left + rectangle_right) - points[0, 0]
@@ -152,13 +159,13 @@ def _is_free_in_grid(points, region):
 
 
 @allocation_free
-def distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins) -> float:
+def measure_distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins) -> float:
     """Distance of a point from the nearest edge."""
-    return _largest_distance_to_edges(x, y, x, y, edges, bins)
+    return _bound_distance_to_edges(x, y, x, y, edges, bins)
 
 
 @allocation_free
-def _largest_distance_to_edges(
+def _bound_distance_to_edges(
     x: float, y: float, other_x: float, other_y: float, edges: np.ndarray, bins: Bins
 ) -> float:
     """The least of all edges' larger distance from two points.
@@ -184,25 +191,29 @@ def _largest_distance_to_edges(
                 number = column * bins.rows + row
                 for k in range(bins.first[number], bins.first[number + 1]):
                     ax, ay, bx, by = edges[bins.members[k]]
-                    first = distance_to_segment(x, y, ax, ay, bx, by)
+                    first = measure_distance_to_segment(x, y, ax, ay, bx, by)
                     if first < least:
-                        other = distance_to_segment(other_x, other_y, ax, ay, bx, by)
+                        other = measure_distance_to_segment(other_x, other_y, ax, ay, bx, by)
                         least = min(least, max(first, other))
     return least
 
 
-def _depth_by_edges(x, y, region):
-    return distance_to_edges(x, y, region.edges, region.bins) if is_blocked(x, y, region) else 0.0
+def _measure_depth_by_edges(x, y, region):
+    return (
+        measure_distance_to_edges(x, y, region.edges, region.bins)
+        if is_blocked(x, y, region)
+        else 0.0
+    )
 
 
-def _depth_bound_by_edges(points, region):
+def _bound_depth_by_edges(points, region):
     """No blocked point is deeper than its distance from any edge, which along a chord is greatest
     at one of its ends.
     """
-    largest = _largest_distance_to_edges(
+    largest = _bound_distance_to_edges(
         points[0, 0], points[0, 1], points[-1, 0], points[-1, 1], region.edges, region.bins
     )
-    return largest + bulge_of(points)
+    return largest + measure_bulge(points)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -210,7 +221,7 @@ def _depth_bound_by_edges(points, region):
 
 
 @allocation_free
-def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
+def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
     """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein
     coefficient of the squared distance.
 
@@ -230,7 +241,7 @@ def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
     return math.sqrt(max(0.0, least))
 
 
-def _depth_in_circles(x, y, region):
+def _measure_depth_in_circles(x, y, region):
     left, right, bottom, top = region.bounds
     depth = math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
     for k in range(len(region.radii)):
@@ -241,11 +252,11 @@ def _depth_in_circles(x, y, region):
 
 
 def _is_blocked_in_circles(x, y, region):
-    return depth_at(x, y, region) > TOLERANCE
+    return measure_depth(x, y, region) > TOLERANCE
 
 
 def _is_free_in_circles(points, region):
-    x_low, x_high, y_low, y_high = box(points)
+    x_low, x_high, y_low, y_high = bound_box(points)
     left, right, bottom, top = region.bounds
     reach = 2.0 * TOLERANCE
     if (
@@ -255,9 +266,9 @@ def _is_free_in_circles(points, region):
         or y_high > top + reach
     ):
         return False
-    along_x, along_y = direction(points)
-    along_low, along_high = range_along(points, along_x, along_y)
-    across_low, across_high = range_along(points, -along_y, along_x)
+    along_x, along_y = choose_direction(points)
+    along_low, along_high = measure_range_along(points, along_x, along_y)
+    across_low, across_high = measure_range_along(points, -along_y, along_x)
     for k in range(len(region.radii)):
         radius = region.radii[k] - reach
         x = region.centres[k, 0] - points[0, 0]
@@ -268,12 +279,12 @@ def _is_free_in_circles(points, region):
         outside_across = max(0.0, across_low - across, across - across_high)
         if math.hypot(outside_along, outside_across) >= radius:
             continue
-        if least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]) < radius:
+        if bound_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]) < radius:
             return False
     return True
 
 
-def _depth_bound_in_circles(points, region):
+def _bound_depth_in_circles(points, region):
     bound = 0.0
     left, right, bottom, top = region.bounds
     for x, y in points:
@@ -283,7 +294,7 @@ def _depth_bound_in_circles(points, region):
             bound = max(
                 bound,
                 region.radii[k]
-                - least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]),
+                - bound_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]),
             )
     return bound
 
@@ -321,13 +332,13 @@ def _is_blocked_in_polygons(x, y, region):
         for number in range(column * bins.rows + low, column * bins.rows + high + 1):
             for e in bins.members[bins.first[number] : bins.first[number + 1]]:
                 ax, ay, bx, by = edges[e]
-                if distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
+                if measure_distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
                     return False
     return True
 
 
 @allocation_free
-def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
+def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
     """Smallest and largest distance of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
@@ -342,16 +353,16 @@ def _is_free_in_polygons(points, region):
     """A hull is free if it begins in free space and does not cross the boundary.
 
     Edges away from the hull do not matter, whichever side it is on. The others form chains of
-    consecutive edges: see `_passes_chain`.
+    consecutive edges: see `_pass_chain`.
     """
-    x_low, x_high, y_low, y_high = hull_box = box(points)
-    along_x, along_y = direction(points)
-    across_low, across_high = range_along(points, -along_y, along_x)
+    x_low, x_high, y_low, y_high = hull_box = bound_box(points)
+    along_x, along_y = choose_direction(points)
+    across_low, across_high = measure_range_along(points, -along_y, along_x)
     contacts = np.zeros(len(region.edges), dtype=np.bool_)
     near = np.empty(len(region.edges), dtype=np.int64)
     count = 0
     bins = region.bins
-    is_straight = bulge_of(points) <= _APART
+    is_straight = measure_bulge(points) <= _APART
     first, last = columns_between(x_low, x_high, bins)
     begin, end = columns_between(x_low - 2.0 * _APART, x_high + 2.0 * _APART, bins)
     low, high = rows_near(y_low - 2.0 * _APART, y_high + 2.0 * _APART, bins)
@@ -361,7 +372,7 @@ def _is_free_in_polygons(points, region):
             low, high = rows_between(points[0], points[-1], within, bins)
         for place in range(column * bins.rows + low, column * bins.rows + high + 1):
             for e in bins.members[bins.first[place] : bins.first[place + 1]]:
-                if not contacts[e] and _touches(
+                if not contacts[e] and _can_touch(
                     points, hull_box, along_x, along_y, across_low, across_high, region, e
                 ):
                     contacts[e] = True
@@ -371,7 +382,7 @@ def _is_free_in_polygons(points, region):
     remaining = count
     for e in near[:count]:
         if not contacts[region.preceding[e]]:
-            length = _passes_chain(
+            length = _pass_chain(
                 points, region, contacts, e, along_x, along_y, across_low, across_high
             )
             if length == 0:
@@ -382,7 +393,7 @@ def _is_free_in_polygons(points, region):
 
 
 @allocation_free
-def _touches(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
+def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
     """Whether an edge may touch a hull with a bounding box, and a range across its direction."""
     x_low, x_high, y_low, y_high = hull_box
     ax, ay, bx, by = region.edges[e]
@@ -400,14 +411,12 @@ def _touches(points, hull_box, along_x, along_y, across_low, across_high, region
         or min(across_a, across_b) > across_high + _APART
     ):
         return False
-    low, high = _sides_of_edge(points, region.edges[e], region.normals[e])
+    low, high = _measure_sides_of_edge(points, region.edges[e], region.normals[e])
     return low <= _APART and high >= -_APART
 
 
 @allocation_free
-def _passes_chain(
-    points, region, contacts, first, along_x, along_y, across_low, across_high
-) -> int:
+def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high) -> int:
     """Number of edges of a chain of touched edges if a hull passes it on the free side, or 0.
 
     It does if it lies on the free side of all lines of the chain. Where the blocked region is
@@ -426,7 +435,7 @@ def _passes_chain(
         if length > 0:
             only_convex &= region.convex[region.preceding[e]]
         length += 1
-        low, _ = _sides_of_edge(points, region.edges[e], region.normals[e])
+        low, _ = _measure_sides_of_edge(points, region.edges[e], region.normals[e])
         beside_all &= low >= -reach
         beside_one |= low >= -reach
         facing = along_x * region.normals[e, 1] - along_y * region.normals[e, 0]
@@ -458,18 +467,18 @@ _IS_FREE = {
     PolygonRegion: _is_free_in_polygons,
 }
 _DEPTH_AT = {
-    GridRegion: _depth_by_edges,
-    CircleRegion: _depth_in_circles,
-    PolygonRegion: _depth_by_edges,
+    GridRegion: _measure_depth_by_edges,
+    CircleRegion: _measure_depth_in_circles,
+    PolygonRegion: _measure_depth_by_edges,
 }
 _DEPTH_BOUND = {
-    GridRegion: _depth_bound_by_edges,
-    CircleRegion: _depth_bound_in_circles,
-    PolygonRegion: _depth_bound_by_edges,
+    GridRegion: _bound_depth_by_edges,
+    CircleRegion: _bound_depth_in_circles,
+    PolygonRegion: _bound_depth_by_edges,
 }
 
 
 overload(is_blocked)(lambda x, y, region: _IS_BLOCKED[region.instance_class])
 overload(is_free)(lambda points, region: _IS_FREE[region.instance_class])
-overload(depth_at)(lambda x, y, region: _DEPTH_AT[region.instance_class])
-overload(depth_bound)(lambda points, region: _DEPTH_BOUND[region.instance_class])
+overload(measure_depth)(lambda x, y, region: _DEPTH_AT[region.instance_class])
+overload(bound_depth)(lambda points, region: _DEPTH_BOUND[region.instance_class])

@@ -5,16 +5,16 @@ import math
 import numpy as np
 
 from bezierplan.geometry.checker.certificates import is_blocked, is_free
-from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, size, split_top
+from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, measure_size, split_top
 from bezierplan.geometry.region import Region
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 
 # A parameter interval this short that ends at a blocked point is reported as the collision.
 _SHORTEST_INTERVAL = 1e-11
 
 
-@compiled
-def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
+@compile_kernel
+def find_first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
     """Piece number plus parameter of the first collision (infinite if there is none), and the
     number of intervals examined.
 
@@ -40,7 +40,7 @@ def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
                 points[-1, 0], points[-1, 1], region
             ):
                 return piece + begin[top] + width[top], intervals
-            elif size(points) <= TOLERANCE:
+            elif measure_size(points) <= TOLERANCE:
                 top -= 1
             else:
                 split_top(stack, begin, width, top)

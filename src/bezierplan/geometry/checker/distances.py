@@ -8,60 +8,60 @@ import numpy as np
 
 from bezierplan.geometry.bins import Bins, columns_between, rows_near
 from bezierplan.geometry.checker.certificates import (
-    depth_at,
-    depth_bound,
-    distance_to_edges,
+    bound_depth,
+    bound_distance_to_centre,
     is_free,
-    least_distance_to_centre,
+    measure_depth,
+    measure_distance_to_edges,
 )
 from bezierplan.geometry.checker.hulls import (
     STACK,
-    bulge_of,
+    choose_resolution,
     copy_points,
-    distance_to_segment,
     halve,
-    resolution,
-    size,
+    measure_bulge,
+    measure_distance_to_segment,
+    measure_size,
 )
 from bezierplan.geometry.region import Region
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 
 # Proven error of the clearance in units, and of the depth relative to it.
 CLEARANCE_TOLERANCE = 1e-9
 DEPTH_TOLERANCE = 1e-6
 
 
-@compiled
-def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
-    """Largest depth of a path, to a relative `DEPTH_TOLERANCE` or the pieces' `resolution`, by
-    branch and bound, starting with the piece of its first collision.
+@compile_kernel
+def find_largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
+    """Return the largest depth of a path, to a relative `DEPTH_TOLERANCE` or `choose_resolution` of
+    the pieces, by branch and bound, starting with the piece of its first collision.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
         copy_points(pieces[piece], stack[0])
-        finest = resolution(pieces[piece])
+        finest = choose_resolution(pieces[piece])
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
-            largest = max(largest, depth_at(x, y, region))
+            largest = max(largest, measure_depth(x, y, region))
         top = 0
         while top >= 0:
             points = stack[top]
             enough = largest + max(DEPTH_TOLERANCE * largest, finest)
             if (
-                size(points) <= finest
-                or depth_bound(points, region) <= enough
+                measure_size(points) <= finest
+                or bound_depth(points, region) <= enough
                 or is_free(points, region)
             ):
                 top -= 1
             else:
                 halve(points, stack[top + 1])
-                largest = max(largest, depth_at(points[0, 0], points[0, 1], region))
+                largest = max(largest, measure_depth(points[0, 0], points[0, 1], region))
                 top += 1
     return largest
 
 
-@compiled
-def least_clearance(
+@compile_kernel
+def find_least_clearance(
     pieces: np.ndarray, edges: np.ndarray, bins: Bins, centres: np.ndarray, radii: np.ndarray
 ) -> float:
     """Minimum distance of a free path to edges (n, 4), with their bins, and discs, to
@@ -83,11 +83,11 @@ def least_clearance(
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
             least = min(
                 least,
-                distance_to_edges(x, y, edges, bins),
-                _clearance_of_point(x, y, discs, edges, centres, radii),
+                measure_distance_to_edges(x, y, edges, bins),
+                _measure_clearance_of_point(x, y, discs, edges, centres, radii),
             )
-        reach = least + bulge_of(stack[0])
-        count = _edges_within(reach, pieces[piece], bins, piece, piece_of, obstacles)
+        reach = least + measure_bulge(stack[0])
+        count = _find_edges_within(reach, pieces[piece], bins, piece, piece_of, obstacles)
         for disc in discs:
             obstacles[count] = disc
             count += 1
@@ -95,11 +95,11 @@ def least_clearance(
         top = 0
         while top >= 0:
             points = stack[top]
-            bulge = bulge_of(points)
+            bulge = measure_bulge(points)
             near = 0
             for k in range(counts[top]):
                 if (
-                    _clearance_bound(points, bulge, obstacles[k], edges, centres, radii)
+                    _bound_clearance(points, bulge, obstacles[k], edges, centres, radii)
                     < least - CLEARANCE_TOLERANCE
                 ):
                     obstacles[near], obstacles[k] = obstacles[k], obstacles[near]
@@ -110,7 +110,7 @@ def least_clearance(
                 halve(points, stack[top + 1])
                 least = min(
                     least,
-                    _clearance_of_point(
+                    _measure_clearance_of_point(
                         points[0, 0], points[0, 1], obstacles[:near], edges, centres, radii
                     ),
                 )
@@ -120,7 +120,7 @@ def least_clearance(
 
 
 @allocation_free
-def _edges_within(
+def _find_edges_within(
     reach: float,
     points: np.ndarray,
     bins: Bins,
@@ -150,7 +150,7 @@ def _edges_within(
 
 
 @allocation_free
-def _clearance_of_point(
+def _measure_clearance_of_point(
     x: float,
     y: float,
     obstacles: np.ndarray,
@@ -164,7 +164,7 @@ def _clearance_of_point(
         disc = obstacle - len(edges)
         if disc < 0:
             ax, ay, bx, by = edges[obstacle]
-            least = min(least, distance_to_segment(x, y, ax, ay, bx, by))
+            least = min(least, measure_distance_to_segment(x, y, ax, ay, bx, by))
         else:
             least = min(
                 least,
@@ -174,7 +174,7 @@ def _clearance_of_point(
 
 
 @allocation_free
-def _clearance_bound(
+def _bound_clearance(
     points: np.ndarray,
     bulge: float,
     obstacle: int,
@@ -191,25 +191,29 @@ def _clearance_bound(
     if disc < 0:
         return max(
             0.0,
-            _distance_of_segments(points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:])
+            _measure_distance_of_segments(
+                points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:]
+            )
             - bulge,
         )
     x, y = centres[disc, 0], centres[disc, 1]
-    from_chord = distance_to_segment(x, y, ax, ay, bx, by) - bulge
+    from_chord = measure_distance_to_segment(x, y, ax, ay, bx, by) - bulge
     if bulge > 0.0:
-        from_chord = max(from_chord, least_distance_to_centre(points, x, y))
+        from_chord = max(from_chord, bound_distance_to_centre(points, x, y))
     return max(0.0, from_chord - radii[disc])
 
 
 @allocation_free
-def _distance_of_segments(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> float:
+def _measure_distance_of_segments(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray
+) -> float:
     if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
         return 0.0
     return min(
-        distance_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]),
-        distance_to_segment(b[0], b[1], c[0], c[1], d[0], d[1]),
-        distance_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]),
-        distance_to_segment(d[0], d[1], a[0], a[1], b[0], b[1]),
+        measure_distance_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]),
+        measure_distance_to_segment(b[0], b[1], c[0], c[1], d[0], d[1]),
+        measure_distance_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]),
+        measure_distance_to_segment(d[0], d[1], a[0], a[1], b[0], b[1]),
     )
 
 

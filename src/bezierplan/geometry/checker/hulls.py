@@ -70,7 +70,7 @@ def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int)
 
 
 @allocation_free
-def size(points: np.ndarray) -> float:
+def measure_size(points: np.ndarray) -> float:
     """Largest distance of a control point from the first one."""
     largest = 0.0
     for i in range(1, len(points)):
@@ -79,7 +79,7 @@ def size(points: np.ndarray) -> float:
 
 
 @allocation_free
-def resolution(points: np.ndarray) -> float:
+def choose_resolution(points: np.ndarray) -> float:
     """Size in units below which halving no longer separates control points: `ROUNDING`, or more for
     large coordinates.
     """
@@ -90,12 +90,12 @@ def resolution(points: np.ndarray) -> float:
 
 
 @allocation_free
-def direction(points: np.ndarray) -> tuple[float, float]:
+def choose_direction(points: np.ndarray) -> tuple[float, float]:
     """Unit vector along a hull: the direction of its chord or, where the chord is short, towards
     the point farthest from the first one.
     """
     farthest = len(points) - 1
-    longest = size(points)
+    longest = measure_size(points)
     if (
         math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1])
         < _SHORT_CHORD * longest
@@ -112,7 +112,7 @@ def direction(points: np.ndarray) -> tuple[float, float]:
 
 
 @allocation_free
-def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
+def measure_range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
     """Smallest and largest component of control points in a direction, relative to the first."""
     low = high = 0.0
     for i in range(1, len(points)):
@@ -123,7 +123,7 @@ def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
 
 
 @allocation_free
-def box(points: np.ndarray) -> tuple[float, float, float, float]:
+def bound_box(points: np.ndarray) -> tuple[float, float, float, float]:
     """Lowest and highest x, lowest and highest y of the control points."""
     left = right = points[0, 0]
     bottom = top = points[0, 1]
@@ -136,7 +136,9 @@ def box(points: np.ndarray) -> tuple[float, float, float, float]:
 
 
 @allocation_free
-def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+def measure_distance_to_segment(
+    x: float, y: float, ax: float, ay: float, bx: float, by: float
+) -> float:
     """Distance of the point (x, y) from the segment from (ax, ay) to (bx, by)."""
     dx = bx - ax
     dy = by - ay
@@ -150,11 +152,11 @@ def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by:
 
 
 @allocation_free
-def bulge_of(points: np.ndarray) -> float:
+def measure_bulge(points: np.ndarray) -> float:
     """Largest distance of a control point from the chord."""
     largest = 0.0
     for i in range(1, len(points) - 1):
-        distance = distance_to_segment(
+        distance = measure_distance_to_segment(
             points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1]
         )
         largest = max(largest, distance)

@@ -8,7 +8,7 @@ allowed. There is one file for each kind of region, and one for the lattice.
 import numpy as np
 
 from bezierplan.geometry.checker import TOLERANCE, check
-from bezierplan.geometry.region import CircleRegion, GridRegion, region
+from bezierplan.geometry.region import CircleRegion, GridRegion, build_region
 from bezierplan.geometry.shortest_paths.circles import shortest_around_circles
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
 from bezierplan.geometry.shortest_paths.grid import centre_path, shortest_on_grid
@@ -51,7 +51,7 @@ def shortest_path(problem: Problem) -> Bound:
     >>> found.points.tolist()
     [[0.5, 0.5], [3.0, 1.0], [3.5, 2.5]]
     """
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     for point in (problem.start, problem.target):
         if not check(np.array([[point, point]]), blocked).feasible:
             return no_path()

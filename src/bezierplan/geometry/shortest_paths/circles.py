@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.checker import TOLERANCE, first_collision
-from bezierplan.geometry.checker.hulls import distance_to_segment
+from bezierplan.geometry.checker import TOLERANCE, find_first_collision
+from bezierplan.geometry.checker.hulls import measure_distance_to_segment
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces.problem import Problem
 
 if TYPE_CHECKING:
@@ -88,15 +88,15 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
     known = np.arange(2)
     while True:
         among = scene._replace(centres=scene.centres[known], radii=scene.radii[known])
-        graph = _graph(np.arange(2, len(known)), among, whole=False)
-        length, tied = _tied(graph)
+        graph = _build_graph(np.arange(2, len(known)), among, whole=False)
+        length, tied = _find_ties(graph)
         if math.isinf(length):
             return no_path()
         tail, head = graph.ends[tied].T
         # An arc lies within its own height of its chord.
         height = among.radii[graph.nodes.circles[tail]] * (1 - np.cos(0.5 * graph.sweeps[tied]))
         points = graph.nodes.points
-        gaps = _gaps(points[tail], points[head], height + _BESIDE * length, scene)
+        gaps = _measure_gaps(points[tail], points[head], height + _BESIDE * length, scene)
         gaps[known] = math.inf
         met = np.count_nonzero(gaps <= 0)
         if met == 0:
@@ -104,12 +104,12 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
         # As many of the nearest come along as are known: a wall of circles is not met one by one.
         known = np.union1d(known, np.argsort(gaps)[: max(met, len(known))])
     passed = known[np.unique(graph.nodes.circles[graph.ends[tied]])]
-    return _shortest(_graph(passed[passed > 1], scene, whole=True), scene, blocked)
+    return _find_shortest(_build_graph(passed[passed > 1], scene, whole=True), scene, blocked)
 
 
-def _shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
+def _find_shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
     """The shortest path from node 0 to node 1."""
-    path = dijkstra_path(_matrix(graph))
+    path = dijkstra_path(_build_matrix(graph))
     near = np.flatnonzero(np.isin(graph.ends, path).all(axis=1))
     edge_of = {tuple(ends): edge for edge, ends in zip(near, graph.ends[near].tolist())}
     taken, sweeps = [], []
@@ -121,24 +121,24 @@ def _shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
     on_circle = graph.nodes.circles[path]
     return Bound(
         math.fsum(graph.lengths[taken]),
-        _circumscribed(graph.nodes.points[path], on_circle, sweeps, scene, blocked),
+        _circumscribe(graph.nodes.points[path], on_circle, sweeps, scene, blocked),
     )
 
 
-def _graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
+def _build_graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
     """The free tangents and arcs of some circles (m,) of a scene, ascending.
 
     whole: cut the arcs at the ends of all their tangents, and not only of the free ones.
     """
-    nodes = _nodes(circles, scene)
-    tangents = _tangents(nodes, len(scene.radii))
+    nodes = _list_nodes(circles, scene)
+    tangents = _list_tangents(nodes, len(scene.radii))
     begin, end = nodes.points[tangents].transpose(1, 0, 2)
-    tangents = tangents[_are_free(begin, end, scene)]
+    tangents = tangents[_find_free(begin, end, scene)]
     if not whole:
         used = np.union1d([0, 1], tangents)
         nodes = _Nodes(*(column[used] for column in nodes))
         tangents = np.searchsorted(used, tangents)
-    arcs, sweeps = _free_arcs(nodes, scene)
+    arcs, sweeps = _list_free_arcs(nodes, scene)
     ends = np.concatenate([tangents, arcs])
     straight = np.hypot(*(nodes.points[tangents[:, 1]] - nodes.points[tangents[:, 0]]).T)
     lengths = np.concatenate([straight, scene.radii[nodes.circles[arcs[:, 0]]] * sweeps])
@@ -147,13 +147,13 @@ def _graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
     return _Graph(nodes, ends[kept], sweeps[kept], lengths[kept])
 
 
-def _tied(graph: _Graph) -> tuple[float, np.ndarray]:
+def _find_ties(graph: _Graph) -> tuple[float, np.ndarray]:
     """The length of the shortest way from node 0 to node 1, and which edges are part of it or of
     one that is as long but for `_TIED`: bool (e,).
     """
     from scipy.sparse.csgraph import dijkstra
 
-    from_start, from_target = dijkstra(_matrix(graph), directed=False, indices=[0, 1])
+    from_start, from_target = dijkstra(_build_matrix(graph), directed=False, indices=[0, 1])
     tail, head = graph.ends.T
     through = graph.lengths + np.minimum(
         from_start[tail] + from_target[head], from_start[head] + from_target[tail]
@@ -161,7 +161,7 @@ def _tied(graph: _Graph) -> tuple[float, np.ndarray]:
     return from_start[1], through <= from_start[1] * (1 + _TIED)
 
 
-def _matrix(graph: _Graph) -> "csr_array":
+def _build_matrix(graph: _Graph) -> "csr_array":
     """The lengths of edges by their ends."""
     from scipy.sparse import coo_array
 
@@ -171,7 +171,7 @@ def _matrix(graph: _Graph) -> "csr_array":
     return coo_array((lengths, tuple(ends)), shape=(count, count)).tocsr()
 
 
-@compiled
+@compile_kernel
 def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Which circles do not lie inside another; of equal circles only the first: bool (n,)."""
     outer = np.ones(len(radii), dtype=np.bool_)
@@ -185,21 +185,21 @@ def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
     return outer
 
 
-def _nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
+def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
     """Start, target, and the ends of all tangents at some circles (m,), ascending."""
     parts = [(np.zeros(2), np.arange(2), scene.centres[:2])]
     for circle in circles.tolist():
         # Python's own `hypot` is a last bit more exact than that of kernels.
         step = (scene.centres - scene.centres[circle]).T.tolist()
-        parts.append(_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
+        parts.append(_list_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
     angles, names, points = map(np.concatenate, zip(*parts))
     on_circle = names // (4 * len(scene.radii))
     on_circle[1] = 1
     return _Nodes(on_circle, angles, names, points)
 
 
-@compiled
-def _nodes_at(
+@compile_kernel
+def _list_nodes_at(
     circle: int, distances: np.ndarray, scene: _Scene
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
@@ -246,7 +246,7 @@ def _nodes_at(
     return angles[:count], names[:count], points[:count]
 
 
-def _tangents(nodes: _Nodes, count: int) -> np.ndarray:
+def _list_tangents(nodes: _Nodes, count: int) -> np.ndarray:
     """The pairs of nodes that a tangent joins, free or not, among so many circles: (t, 2)."""
     other, kind = nodes.names // 4 % count, nodes.names % 4
     name = np.where(other < 2, other, 4 * (other * count + nodes.circles) + kind)
@@ -257,8 +257,8 @@ def _tangents(nodes: _Nodes, count: int) -> np.ndarray:
     return np.column_stack([found, number])[joined]
 
 
-@compiled
-def _are_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
+@compile_kernel
+def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
     """Which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
     left, right, bottom, top = scene.bounds
     free = np.empty(len(begin), dtype=np.bool_)
@@ -274,12 +274,16 @@ def _are_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
             if not free[i]:
                 break
             x, y = scene.centres[k]
-            free[i] = distance_to_segment(x, y, ax, ay, bx, by) >= scene.radii[k] - TOLERANCE
+            free[i] = (
+                measure_distance_to_segment(x, y, ax, ay, bx, by) >= scene.radii[k] - TOLERANCE
+            )
     return free
 
 
-@compiled
-def _gaps(begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene) -> np.ndarray:
+@compile_kernel
+def _measure_gaps(
+    begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene
+) -> np.ndarray:
     """How far circles lie from segments, from points (n, 2) to points (n, 2), that reach to both
     sides by a width (n,): (m,), at most 0 where they meet one.
     """
@@ -288,12 +292,12 @@ def _gaps(begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene) 
         x, y = scene.centres[k]
         for i in range(len(begin)):
             (ax, ay), (bx, by) = begin[i], end[i]
-            gap = distance_to_segment(x, y, ax, ay, bx, by) - scene.radii[k] - width[i]
+            gap = measure_distance_to_segment(x, y, ax, ay, bx, by) - scene.radii[k] - width[i]
             gaps[k] = min(gaps[k], gap)
     return gaps
 
 
-def _free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
+def _list_free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
     """Free arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2) and
     angles (n,).
     """
@@ -304,7 +308,7 @@ def _free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
         order = np.argsort(angles)
         number, begin = order + first, angles[order]
         sweep = np.diff(begin, append=begin[0] + math.tau)
-        middle, half = _covered_angles(circle, scene)
+        middle, half = _find_covered_angles(circle, scene)
         after = (middle - begin[:, None]) % math.tau
         overlap = np.full(after.shape, -math.inf)
         for turn in (-math.tau, 0.0, math.tau):
@@ -328,7 +332,7 @@ def _shortest_between(ends: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     return order[first]
 
 
-def _covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
+def _find_covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
     """Parts of a circle in other circles or outside the border: middle and half-width of each."""
     centres, radii = scene.centres, scene.radii
     radius = radii[k]
@@ -346,7 +350,7 @@ def _covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
     return middle, np.arccos(np.clip(np.concatenate([cosine, margin[margin < 1]]), -1, 1))
 
 
-def _circumscribed(
+def _circumscribe(
     points: np.ndarray,
     circles: np.ndarray,
     sweeps: list[float],
@@ -381,7 +385,7 @@ def _circumscribed(
                 )
             polyline.append(points[end : end + 1])
         line = np.concatenate(polyline)
-        if first_collision(np.stack([line[:-1], line[1:]], axis=1), blocked)[0] == math.inf:
+        if find_first_collision(np.stack([line[:-1], line[1:]], axis=1), blocked)[0] == math.inf:
             break
         step *= 0.5
     return line

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -34,12 +34,12 @@ def no_path() -> Bound:
     return Bound(math.inf, np.empty((0, 2)))
 
 
-def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
+def move_bound(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
     """A path relative to a grid's corner, converted to coordinates relative to the origin."""
     return bound._replace(points=bound.points + by)
 
 
-def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
+def follow_nodes(points: np.ndarray, nodes: np.ndarray) -> Bound:
     """The polyline along some of the points (n, 2), without repetitions; no path without nodes."""
     if not len(nodes):
         return no_path()
@@ -58,7 +58,7 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
     tail, head = np.nonzero(visible)
     lengths = np.hypot(*(points[head] - points[tail]).T)
     graph = coo_array((np.maximum(lengths, NO_LENGTH), (tail, head)), shape=visible.shape).tocsr()
-    return along(points, dijkstra_path(graph))
+    return follow_nodes(points, dijkstra_path(graph))
 
 
 def dijkstra_path(graph: "csr_array") -> np.ndarray:
@@ -76,8 +76,8 @@ def dijkstra_path(graph: "csr_array") -> np.ndarray:
     return np.array(nodes[::-1])
 
 
-@compiled
-def way_back(before, length):
+@compile_kernel
+def trace_back(before, length):
     """The nodes from node 0 to 1, from each one's predecessor; empty if the length is infinite."""
     nodes = [1]
     while before[nodes[-1]] >= 0:

@@ -5,10 +5,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezierplan.geometry.region import GridRegion, from_origin, occupied_around, walled
+from bezierplan.geometry.region import GridRegion, add_wall, find_occupied_around, from_origin
 from bezierplan.geometry.shortest_paths import shadows
-from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.geometry.shortest_paths.graph import (
+    Bound,
+    follow_nodes,
+    move_bound,
+    no_path,
+    shortest_in_graph,
+)
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -36,20 +42,26 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     occupied cells share only a corner.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
-    corners, slopes = _grid_corners(cells)
+    corners, slopes = _list_grid_corners(cells)
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
-    scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
+    scale = _choose_lattice(
+        ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape))
+    )
     lattice = np.rint(ends / blocked.cell * scale).astype(np.int64)
-    if not _joined(cells, lattice[0], lattice[1], scale):
+    if not _is_joined(cells, lattice[0], lattice[1], scale):
         return no_path()
-    direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale)
+    direct = bool((lattice[0] == lattice[1]).all()) or _is_visible(
+        lattice[0], lattice[1], cells, scale
+    )
     nodes = shadows.search(
-        shadows.scene(cells, corners, slopes, scale),
+        shadows.build_scene(cells, corners, slopes, scale),
         lattice,
         np.concatenate([ends / blocked.cell, corners]),
         direct,
     )
-    return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
+    return move_bound(
+        follow_nodes(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin
+    )
 
 
 def centre_path(problem: Problem) -> Bound:
@@ -61,7 +73,7 @@ def centre_path(problem: Problem) -> Bound:
     grid = problem.workspace
     assert isinstance(grid, Grid)
     nodes = [
-        _centre_cell(grid, name, point)
+        _find_centre_cell(grid, name, point)
         for name, point in (("start", problem.start), ("target", problem.target))
     ]
     if any(grid.occupied[row, column] for row, column in nodes):
@@ -70,11 +82,11 @@ def centre_path(problem: Problem) -> Bound:
     if len(cells) > _MOST_NODES:
         raise ValueError(f"a graph of {len(cells)} nodes; expected at most {_MOST_NODES}")
     lattice = 2 * cells[:, ::-1] + 1
-    visible = _visible_centres(lattice, walled(grid.occupied))
-    return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
+    visible = _find_visible_centres(lattice, add_wall(grid.occupied))
+    return move_bound(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
 
-def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
+def _find_centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
     """Row and column of the cell whose centre is the given point."""
     column, row = grid.in_cells(np.array(point)) - 0.5
     rows, columns = grid.occupied.shape
@@ -87,11 +99,11 @@ def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int
     return round(row), round(column)
 
 
-def _grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _list_grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Corners (n, 2) as x and y in cells, and slopes (n,) of the directions that a shortest path
     can take from them: +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0.
     """
-    below_left, below_right, above_left, above_right = around = occupied_around(cells)
+    below_left, below_right, above_left, above_right = around = find_occupied_around(cells)
     number = around.view(np.int8).sum(axis=0, dtype=np.int8)
     single, pair = number == 1, number == 2
     # Around a single occupied cell a path turns from one of the two adjacent quadrants to the
@@ -104,7 +116,7 @@ def _grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return corners, slopes
 
 
-def _lattice(points: np.ndarray, finest: int) -> int:
+def _choose_lattice(points: np.ndarray, finest: int) -> int:
     """The least lattice points per cell that make all coordinates integers; `finest` at most."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
@@ -115,7 +127,7 @@ def _lattice(points: np.ndarray, finest: int) -> int:
     return scale if exact and scale <= finest else finest
 
 
-def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
+def _is_joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
     """Whether free cells lead from one free point of the lattice to another; they may meet at a
     corner only.
     """
@@ -131,8 +143,8 @@ def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int
     return one == other
 
 
-@compiled
-def _visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+@compile_kernel
+def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Which pairs i < j of cell centres see each other: bool (n, n).
 
     nodes: (n, 2) integers, two for each cell. cells: occupied cells with a ring around them.
@@ -141,23 +153,23 @@ def _visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     for i in range(len(nodes)):
         for j in range(i + 1, len(nodes)):
             same = nodes[i, 0] == nodes[j, 0] and nodes[i, 1] == nodes[j, 1]
-            visible[i, j] = same or _sees(nodes[i], nodes[j], cells, 2)
+            visible[i, j] = same or _is_visible(nodes[i], nodes[j], cells, 2)
     return visible
 
 
 @allocation_free
-def _sees(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
+def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
     """Whether the segment between two different points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
-        return _sees_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale)
+        return _is_visible_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale)
     if dy == 0:
-        return _sees_along_column(start[1], min(start[0], end[0]), abs(dx), cells.T, scale)
-    return _sees_across(start[0], start[1], dx, dy, cells, scale)
+        return _is_visible_along_column(start[1], min(start[0], end[0]), abs(dx), cells.T, scale)
+    return _is_visible_across(start[0], start[1], dx, dy, cells, scale)
 
 
 @allocation_free
-def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
+def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
     """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if
     both of their cells are occupied.
     """
@@ -170,7 +182,7 @@ def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: 
 
 
 @allocation_free
-def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
+def _is_visible_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
     """Whether a slanted segment is free: a walk over the cells that it enters.
 
     to_x and to_y are the distances from the segment's start to the next vertical and horizontal

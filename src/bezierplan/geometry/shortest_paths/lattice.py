@@ -5,7 +5,7 @@ import heapq
 import numpy as np
 
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
-from bezierplan.kernels import compiled
+from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces.lattice import STEPS, Corners
 
 
@@ -37,7 +37,7 @@ def lattice_path(
         return no_path()
 
     walled_cells = np.pad(occupied, 1, constant_values=True)
-    length, cells = _least_cells(
+    length, cells = _find_least_cells(
         walled_cells,
         np.array(start) + 1,
         np.array(target) + 1,
@@ -49,8 +49,8 @@ def lattice_path(
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 
 
-@compiled
-def _least_cells(walls, start, target, steps, diagonal_weight, most_beside):
+@compile_kernel
+def _find_least_cells(walls, start, target, steps, diagonal_weight, most_beside):
     """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if
     there is no path.
 

@@ -6,10 +6,10 @@ import math
 import numpy as np
 
 from bezierplan.geometry.bins import Bins, columns_between, rows_between
-from bezierplan.geometry.checker import TOLERANCE, first_collision
+from bezierplan.geometry.checker import TOLERANCE, find_first_collision
 from bezierplan.geometry.region import PolygonRegion
-from bezierplan.geometry.shortest_paths.graph import Bound, along, way_back
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.geometry.shortest_paths.graph import Bound, follow_nodes, trace_back
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.workspaces.problem import Problem
 
 
@@ -24,10 +24,10 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
-    return along(nodes, _search(nodes, before, after, blocked, blocked.bins))
+    return follow_nodes(nodes, _search(nodes, before, after, blocked, blocked.bins))
 
 
-@compiled
+@compile_kernel
 def _search(
     nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
 ) -> np.ndarray:
@@ -52,14 +52,14 @@ def _search(
                 segment[0, 0, axis] = nodes[tail, axis]
                 segment[0, 1, axis] = nodes[i, axis]
             if (
-                _crosses_any(nodes[tail], nodes[i], region.edges, bins)
-                or first_collision(segment, region)[0] < math.inf
+                _is_crossing_any(nodes[tail], nodes[i], region.edges, bins)
+                or find_first_collision(segment, region)[0] < math.inf
             ):
                 continue
         settled[i] = True
         came_by[i] = tail
         if i == 1:
-            return way_back(came_by, length)
+            return trace_back(came_by, length)
         turn = _turn_at(nodes, tail, i, before, after)
         for j in range(len(nodes)):
             if settled[j]:
@@ -98,11 +98,11 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
     if min(turn_before, turn_after) < -clearly and max(turn_before, turn_after) > clearly:
         return False
     length = math.hypot(dx, dy)
-    return length == 0.0 or not _apart(turn_before / length, turn_after / length)
+    return length == 0.0 or not _is_apart(turn_before / length, turn_after / length)
 
 
 @allocation_free
-def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
+def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
     """Whether a segment crosses an edge strictly; mere touching is left to the certified check.
     Edges near its beginning come first.
     """
@@ -121,18 +121,20 @@ def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) ->
                 beside |= (
                     max(edges[e, 1], edges[e, 3]) < bottom or min(edges[e, 1], edges[e, 3]) > top
                 )
-                if not beside and _crosses_edge(a, b, edges[e, :2], edges[e, 2:]):
+                if not beside and _is_crossing(a, b, edges[e, :2], edges[e, 2:]):
                     return True
     return False
 
 
 @allocation_free
-def _crosses_edge(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
-    return _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b))
+def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+    return _is_apart(_offset(a, b, c), _offset(a, b, d)) and _is_apart(
+        _offset(c, d, a), _offset(c, d, b)
+    )
 
 
 @allocation_free
-def _apart(first: float, second: float) -> bool:
+def _is_apart(first: float, second: float) -> bool:
     """Whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import occupied_around, runs_of
-from bezierplan.geometry.shortest_paths.graph import way_back
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.geometry.region import find_occupied_around, find_runs
+from bezierplan.geometry.shortest_paths.graph import trace_back
+from bezierplan.kernels import allocation_free, compile_kernel
 
 
 class Scene(NamedTuple):
@@ -41,20 +41,20 @@ class Scene(NamedTuple):
     scale: int
 
 
-def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
+def build_scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
     """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
-    row, begin, end = runs_of(cells).astype(np.int64).T
+    row, begin, end = find_runs(cells).astype(np.int64).T
     runs = np.column_stack([begin, end]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
     column, row = corners.T
-    around = occupied_around(cells)[:, row, column].astype(np.int64)
+    around = find_occupied_around(cells)[:, row, column].astype(np.int64)
     below_left, below_right, above_left, above_right = around
     sides = above_left + above_right - below_left - below_right
     return Scene(cells, first_run, runs, corners, first_corner, slopes, sides, scale)
 
 
-@compiled
+@compile_kernel
 def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> np.ndarray:
     """The nodes of a shortest path from start to target by the algorithm A*, empty if there is no
     path. Node 0 is the start, node 1 the target, then come the corners.
@@ -82,7 +82,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
             continue
         settled[i] = True
         if i == 1:
-            return way_back(came_by, length[1])
+            return trace_back(came_by, length[1])
         count = (
             _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, view)
             if i
@@ -176,7 +176,7 @@ def _look_across(x, y, side, cone, scene, fans, view, count):
     band = y // scene.scale if side > 0 else -(-y // scene.scale) - 1
     far = (band + 1) * scene.scale - y if side > 0 else y - band * scene.scale
     # In the first row the nearest block on each side hides all others.
-    run = _first_run_beyond(x // scene.scale, band, scene)
+    run = _find_first_run_beyond(x // scene.scale, band, scene)
     if scene.runs[run, 0] * scene.scale < x:
         return count
     fan, following = fans[0], fans[1]
@@ -213,7 +213,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
     for k in range(intervals):
         low, low_y, high, high_y = fan[k]
         nearest = low * (near if low > 0 else far) // low_y + x
-        run = _first_run_beyond(nearest // scene.scale, band, scene)
+        run = _find_first_run_beyond(nearest // scene.scale, band, scene)
         while True:
             begin, end = scene.runs[run, 0] * scene.scale - x, scene.runs[run, 1] * scene.scale - x
             # A block hides the open interval between the slopes to two of its corners.
@@ -236,7 +236,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 
 @allocation_free
-def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
+def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
     """The first run of a row that ends right of a grid line; every row ends with the ring's."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:

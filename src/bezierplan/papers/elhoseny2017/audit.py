@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from bezierplan.analysis.audit import rules
 from bezierplan.analysis.audit.rows import checked, compared
 from bezierplan.papers.elhoseny2017.functions import counts, said, solutions
-from bezierplan.planners.parts.diversity import q_statistic
+from bezierplan.planners.parts.diversity import compute_q_statistic
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
@@ -32,7 +32,10 @@ def _audit_example(published: "Published") -> Iterator[dict]:
     rule = "the text counts as it defines"
     for name, counted in counts(genes["S1"], genes["S2"]).items():
         yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
-    rule, q = "Q of the counts in the text is the printed one", q_statistic(*in_text.values())
+    rule, q = (
+        "Q of the counts in the text is the printed one",
+        compute_q_statistic(*in_text.values()),
+    )
     yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
 
 

@@ -14,7 +14,7 @@ import pandas as pd
 from bezierplan.analysis.results import select
 from bezierplan.analysis.statistics import interval
 from bezierplan.geometry.cell_length import DIAGONAL
-from bezierplan.planners.parts.diversity import q_statistic
+from bezierplan.planners.parts.diversity import compute_q_statistic
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
 
 def q(one: np.ndarray, other: np.ndarray) -> float:
     """Equation 10: Q of two solutions (n,) of 0 and 1."""
-    return q_statistic(*counts(one, other).values())
+    return compute_q_statistic(*counts(one, other).values())
 
 
 def q_table(published: "Published") -> pd.DataFrame:

@@ -105,10 +105,10 @@ def _clearance_in(grid: Grid) -> Callable[[Path], float]:
     cells so that the border is farthest.
     """
     from bezierplan.geometry import checker, curves
-    from bezierplan.geometry.region import region
+    from bezierplan.geometry.region import build_region
 
     margin = sum(grid.occupied.shape)
-    wide = region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
+    wide = build_region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
 
     def clearance(path: Path) -> float:
         moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)

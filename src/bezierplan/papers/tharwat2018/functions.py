@@ -53,8 +53,8 @@ def chaotic_sequences(*, iterations: int, singer_mu: float) -> pd.DataFrame:
     rng = generator("tharwat2018/figure3")
     frames = []
     for name in CHAOTIC:
-        start = chaotic_maps.random_start(rng, name, singer_mu)
-        values = chaotic_maps.sequence(name, start, iterations, singer_mu).values
+        start = chaotic_maps.draw_start(rng, name, singer_mu)
+        values = chaotic_maps.compute_sequence(name, start, iterations, singer_mu).values
         frames.append(
             pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values})
         )
@@ -73,8 +73,8 @@ def gauss_above(
     rng = generator("tharwat2018/C39")
     shares = []
     for _ in range(SEQUENCES):
-        start = chaotic_maps.random_start(rng, "gauss", math.nan)
-        values = chaotic_maps.sequence("gauss", start, 1000, math.nan).values[FIRST_VALUES:]
+        start = chaotic_maps.draw_start(rng, "gauss", math.nan)
+        values = chaotic_maps.compute_sequence("gauss", start, 1000, math.nan).values[FIRST_VALUES:]
         shares.append(np.mean(values > limit))
     share, ends = _mean(np.array(shares))
     return "-" if share > 0 else "+", share, ends, SEQUENCES
@@ -114,10 +114,12 @@ def sensitive_to_start(
 
 def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: float) -> float:
     """The Lyapunov exponent, per iteration, of a map's sequence from a random start."""
-    start = chaotic_maps.random_start(rng, name, singer_mu)
-    values = chaotic_maps.sequence(name, start, LONG, singer_mu).values
+    start = chaotic_maps.draw_start(rng, name, singer_mu)
+    values = chaotic_maps.compute_sequence(name, start, LONG, singer_mu).values
     beside = np.where(values[:-1] < 0.5, values[:-1] + apart, values[:-1] - apart)
-    following = [chaotic_maps.sequence(name, each, 2, singer_mu).values[1] for each in beside]
+    following = [
+        chaotic_maps.compute_sequence(name, each, 2, singer_mu).values[1] for each in beside
+    ]
     grown = np.abs(np.array(following) - values[1:]) / np.abs(beside - values[:-1])
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 

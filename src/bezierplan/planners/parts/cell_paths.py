@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import Plan
-from bezierplan.planners.parts.genetic import roulette
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.genetic import draw_parents
+from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -23,9 +23,9 @@ class Rules(NamedTuple):
 
     crossover_probability: of a pair of parents. mutation_probability: of a child. elitism: whether
     the best so far replaces a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
-    number of cells in a part made by the last two; tries: see `forage`. shorter_parts: whether the
-    first child gets the shorter head and the shorter tail, the second is parent 2, and children
-    lose their loops; otherwise tails are swapped.
+    number of cells in a part made by the last two; tries: see `choose_cell_for_prey`.
+    shorter_parts: whether the first child gets the shorter head and the shorter tail, the second is
+    parent 2, and children lose their loops; otherwise tails are swapped.
     """
 
     crossover_probability: float
@@ -37,7 +37,7 @@ class Rules(NamedTuple):
     shorter_parts: bool = True
 
 
-def places_of(problem: Problem, corners: int) -> Lattice:
+def build_lattice(problem: Problem, corners: int) -> Lattice:
     """The lattice of a problem on a grid. Raises ValueError as `lattice`."""
     return lattice(problem.workspace, problem.start, problem.target, Corners(corners).name)
 
@@ -61,7 +61,7 @@ def plan_of(
     )
 
 
-@compiled
+@compile_kernel
 def evolve(rng, lattice, paths, sizes, generations, rules):
     """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length
     so far (generations + 1,).
@@ -80,7 +80,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
 
     for generation in range(generations + 1):
         for i in range(population):
-            lengths[i] = length(paths[i, : sizes[i]], lattice)
+            lengths[i] = measure_length(paths[i, : sizes[i]], lattice)
             if lengths[i] < best_length:
                 best_size, best_length = put(paths[i, : sizes[i]], best, 0), lengths[i]
         history[generation] = best_length
@@ -89,25 +89,27 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
 
         paths, parents = parents, paths
         sizes, parent_sizes = parent_sizes, sizes
-        drawn = roulette(rng, 1.0 / lengths, population)
+        drawn = draw_parents(rng, 1.0 / lengths, population)
         for i in range(population):
             sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
                 father = parents[drawn[i], : parent_sizes[drawn[i]]]
                 mother = parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
-                k, m = common_cell(rng, father, mother, marks)
+                k, m = draw_common_cell(rng, father, mother, marks)
                 if k == 0:
                     continue
                 if rules.shorter_parts:
                     head = (
                         father[: k + 1]
-                        if length(father[: k + 1], lattice) <= length(mother[: m + 1], lattice)
+                        if measure_length(father[: k + 1], lattice)
+                        <= measure_length(mother[: m + 1], lattice)
                         else mother[: m + 1]
                     )
                     tail = (
                         father[k:]
-                        if length(father[k:], lattice) <= length(mother[m:], lattice)
+                        if measure_length(father[k:], lattice)
+                        <= measure_length(mother[m:], lattice)
                         else mother[m:]
                     )
                     size = put(tail, child, put(head[:-1], child, 0))
@@ -120,7 +122,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
                 sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.shorter_parts, marks)
         for i in range(population):
             if rng.random() < rules.mutation_probability:
-                size = _mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
+                size = _make_mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
                 if size:
                     sizes[i] = _replace(
                         paths[i], sizes[i], child[:size], rules.shorter_parts, marks
@@ -147,17 +149,17 @@ def _replace(path, size, child, cut, marks):
     return put(child[:child_size], path, 0)
 
 
-@compiled
-def _mutant(rng, lattice, path, rules, child, part, marks):
+@compile_kernel
+def _make_mutant(rng, lattice, path, rules, child, part, marks):
     """Make a mutant of a path. Returns its size, or 0 if nothing changed."""
     if rules.mutation == ONE_CELL:
         return change_cell(rng, lattice, path, child)
-    k, m = integer(rng, 0, len(path)), integer(rng, 0, len(path))
+    k, m = draw_integer(rng, 0, len(path)), draw_integer(rng, 0, len(path))
     first, last = min(k, m), max(k, m)
     if last - first < 2:
         return 0
     if rules.mutation == RECONNECT:
-        size = reconnect(rng, lattice, path[first], path[last], part, marks)
+        size = join_through_random_cell(rng, lattice, path[first], path[last], part, marks)
     else:
         size = walk(rng, lattice, path[first], path[last], rules.tries, part, marks)
     if size == 0:
@@ -166,7 +168,7 @@ def _mutant(rng, lattice, path, rules, child, part, marks):
 
 
 @allocation_free
-def length(path, lattice):
+def measure_length(path, lattice):
     """Length in cells, including the way from the start and to the target; equal numbers of steps
     give equal lengths, whatever their order.
     """
@@ -214,7 +216,7 @@ def join(lattice, cells, path, marks):
         elif cell == path[size - 1]:
             first += 1
         else:
-            between = _between(lattice, path[size - 1], cell, marks)
+            between = _find_cell_between(lattice, path[size - 1], cell, marks)
             if between < 0 or size == first:
                 break
             first -= 1
@@ -228,7 +230,7 @@ def join(lattice, cells, path, marks):
 
 
 @allocation_free
-def _between(lattice, start, end, marks):
+def _find_cell_between(lattice, start, end, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
@@ -244,7 +246,7 @@ def _between(lattice, start, end, marks):
 
 
 @allocation_free
-def common_cell(rng, first, second, marks):
+def draw_common_cell(rng, first, second, marks):
     """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the
     other; in the other, its last occurrence.
 
@@ -257,7 +259,7 @@ def common_cell(rng, first, second, marks):
         common += marks[first[k]] > 0
     k = m = 0
     if common:
-        wanted = integer(rng, 0, common)
+        wanted = draw_integer(rng, 0, common)
         while wanted >= 0:
             k += 1
             wanted -= marks[first[k]] > 0
@@ -295,12 +297,12 @@ def change_cell(rng, lattice, path, child):
     """
     if len(path) < 4:
         return 0
-    k = integer(rng, 1, len(path) - 1)
+    k = draw_integer(rng, 1, len(path) - 1)
     chosen, candidates = -1, 0
     for cell in lattice.neighbours[path[k - 1]]:
         if cell >= 0 and cell != path[k] and step_between(lattice, cell, path[k + 1]) >= 0:
             candidates += 1
-            if integer(rng, 0, candidates) == 0:
+            if draw_integer(rng, 0, candidates) == 0:
                 chosen = cell
     if candidates:
         put(path, child, 0)
@@ -311,15 +313,15 @@ def change_cell(rng, lattice, path, child):
     return 0
 
 
-@compiled
-def reconnect(rng, lattice, first, last, part, marks):
+@compile_kernel
+def join_through_random_cell(rng, lattice, first, last, part, marks):
     """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if
     that cell is occupied or out of reach.
     """
     rows = (lattice.row[first], lattice.row[last])
     columns = (lattice.column[first], lattice.column[last])
-    row = integer(rng, min(rows), max(rows) + 1)
-    cell = row * (lattice.column[-1] + 1) + integer(rng, min(columns), max(columns) + 1)
+    row = draw_integer(rng, min(rows), max(rows) + 1)
+    cell = row * (lattice.column[-1] + 1) + draw_integer(rng, min(columns), max(columns) + 1)
     if lattice.occupied[cell]:
         return 0
     return join(lattice, np.array([first, cell, last]), part, marks)
@@ -334,7 +336,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
     marks[first] = 1
     size = 1
     while part[size - 1] != last and size < len(part):
-        cell = forage(rng, lattice, part[size - 1], last, tries, marks)
+        cell = choose_cell_for_prey(rng, lattice, part[size - 1], last, tries, marks)
         if cell < 0:
             break
         part[size] = cell
@@ -346,7 +348,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
 
 
 @allocation_free
-def forage(rng, lattice, cell, target, tries, visited):
+def choose_cell_for_prey(rng, lattice, cell, target, tries, visited):
     """A fish's next cell when it looks for prey (ma2020, reference 31), or -1 if all are visited.
 
     The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a
@@ -359,16 +361,16 @@ def forage(rng, lattice, cell, target, tries, visited):
         unvisited += neighbour >= 0 and not visited[neighbour]
     if unvisited == 0:
         return -1
-    near = distance_square(lattice, cell, target)
+    near = compute_distance_square(lattice, cell, target)
     for _ in range(tries):
-        wanted = integer(rng, 0, present)
+        wanted = draw_integer(rng, 0, present)
         for neighbour in neighbours:
             wanted -= neighbour >= 0
             if wanted < 0:
                 break
-        if not visited[neighbour] and distance_square(lattice, neighbour, target) < near:
+        if not visited[neighbour] and compute_distance_square(lattice, neighbour, target) < near:
             return neighbour
-    wanted = integer(rng, 0, unvisited)
+    wanted = draw_integer(rng, 0, unvisited)
     for neighbour in neighbours:
         wanted -= neighbour >= 0 and not visited[neighbour]
         if wanted < 0:
@@ -377,7 +379,7 @@ def forage(rng, lattice, cell, target, tries, visited):
 
 
 @allocation_free
-def distance_square(lattice, one, other):
+def compute_distance_square(lattice, one, other):
     """Square of the distance between the centres of two cells, an integer."""
     return (lattice.row[one] - lattice.row[other]) ** 2 + (
         lattice.column[one] - lattice.column[other]

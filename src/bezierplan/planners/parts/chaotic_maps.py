@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 
 Map = IntEnum(
     "Map",
@@ -51,7 +51,7 @@ class Sequence(NamedTuple):
     collapsed_at: int
 
 
-def sequence(name: str, start: float, length: int, singer_mu: float) -> Sequence:
+def compute_sequence(name: str, start: float, length: int, singer_mu: float) -> Sequence:
     """A map's values from a start in [0, 1], which is the first of them. singer_mu: mu of eq. 10,
     between 0.9 and 1.08.
 
@@ -61,33 +61,33 @@ def sequence(name: str, start: float, length: int, singer_mu: float) -> Sequence
     """
     if not 0 <= start <= 1:
         raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
-    return Sequence(*_sequence(_number(name), start, length, singer_mu))
+    return Sequence(*_compute_sequence(_get_number(name), start, length, singer_mu))
 
 
-def random_start(rng: np.random.Generator, name: str, singer_mu: float) -> float:
+def draw_start(rng: np.random.Generator, name: str, singer_mu: float) -> float:
     """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it
     dies at 0 or at a fixed point.
 
     Raises ValueError for an unknown map and if no start stays alive.
     """
-    number = _number(name)
+    number = _get_number(name)
     for _ in range(_MOST_STARTS):
         start = rng.random()
-        if _lives(number, start, singer_mu):
+        if _is_alive(number, start, singer_mu):
             return start
     raise ValueError(
         f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with mu = {singer_mu}"
     )
 
 
-def _number(name: str) -> int:
+def _get_number(name: str) -> int:
     if name not in MAPS:
         raise ValueError(f"unknown chaotic map {name!r}; known: {', '.join(MAPS)}")
     return MAPS.index(name)
 
 
-@compiled
-def _sequence(number, start, length, singer_mu):
+@compile_kernel
+def _compute_sequence(number, start, length, singer_mu):
     """The fields of a `Sequence`."""
     values = np.empty(length)
     clips = 0
@@ -95,7 +95,7 @@ def _sequence(number, start, length, singer_mu):
     x = start
     for k in range(length):
         if k > 0:
-            x = _next(number, x, singer_mu)
+            x = _apply_map(number, x, singer_mu)
             if number != Map.gauss_printed and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
                 clips += 1
@@ -108,27 +108,29 @@ def _sequence(number, start, length, singer_mu):
 
 
 @allocation_free
-def _lives(number, start, singer_mu):
+def _is_alive(number, start, singer_mu):
     """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a
     number of steps.
     """
     before = x = start
     for _ in range(_TRIAL_STEPS):
-        before, x = x, _next(number, x, singer_mu)
+        before, x = x, _apply_map(number, x, singer_mu)
     return x >= STANDSTILL and abs(x - before) >= STANDSTILL
 
 
 @allocation_free
-def _next(number, x, singer_mu):
+def _apply_map(number, x, singer_mu):
     """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
     if number == Map.gauss:
-        return _fraction(1.0 / x) if x > _LEAST else 0.0
+        return _take_fraction(1.0 / x) if x > _LEAST else 0.0
     if number == Map.singer:
         return singer_mu * x * (7.86 + x * (-23.31 + x * (28.75 - SINGER_X4 * x)))
     if number == Map.tent:
         return x / TENT_PEAK if x < TENT_PEAK else 10.0 / 3.0 * (1.0 - x)
     if number == Map.circle:
-        return _fraction(x + CIRCLE_B - CIRCLE_A / (2.0 * math.pi) * math.sin(2.0 * math.pi * x))
+        return _take_fraction(
+            x + CIRCLE_B - CIRCLE_A / (2.0 * math.pi) * math.sin(2.0 * math.pi * x)
+        )
     if number == Map.logistic:
         return LOGISTIC_A * x * (1.0 - x)
     if number == Map.sine:
@@ -141,11 +143,11 @@ def _next(number, x, singer_mu):
     if number == Map.sinusoidal:
         return SINUSOIDAL_A * x * x * math.sin(math.pi * x)
     if number == Map.gauss_printed:
-        return 1.0 / _fraction(x) if _fraction(x) > _LEAST else 0.0
+        return 1.0 / _take_fraction(x) if _take_fraction(x) > _LEAST else 0.0
     return x
 
 
 @allocation_free
-def _fraction(x):
+def _take_fraction(x):
     """x mod 1."""
     return x - math.floor(x)

@@ -6,7 +6,7 @@ from bezierplan.kernels import allocation_free
 
 
 @allocation_free
-def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
+def compute_q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
     """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in
     neither, and in only one of two chromosomes.
 
@@ -20,7 +20,7 @@ def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> floa
 
 
 @allocation_free
-def shared(first: np.ndarray, second: np.ndarray) -> int:
+def count_shared(first: np.ndarray, second: np.ndarray) -> int:
     """Number of elements that two ascending lists share."""
     i = j = common = 0
     while i < len(first) and j < len(second):

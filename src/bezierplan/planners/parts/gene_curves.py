@@ -12,14 +12,14 @@ from bezierplan.geometry.cell_length import (
     CUT,
     HIGH,
     QUARTERS,
+    count_occupied_cells,
+    count_parts,
     cut,
-    occupied_cells,
-    parts,
     sum_of_steps,
     write_samples,
     write_touched_cells,
 )
-from bezierplan.kernels import allocation_free, inlined
+from bezierplan.kernels import allocation_free, compile_inline
 from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 
 # More control points make a chromosome invalid: the curve's degree is at most 60.
@@ -56,10 +56,10 @@ class Scratch(NamedTuple):
     rows: np.ndarray
 
 
-def scratch_for(field: Field) -> Scratch:
+def prepare_scratch(field: Field) -> Scratch:
     """Room for any curve on a field."""
-    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than
-    # the diagonal, and 3 more for each piece; before them the samples of the first look.
+    # `count_parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer
+    # than the diagonal, and 3 more for each piece; before them the samples of the first look.
     samples = (
         math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape))
         + 4 * (MOST_POINTS + 1)
@@ -80,7 +80,7 @@ def validate(
 ) -> float:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome,
     infinite if it is to be deleted. `Obstacles` needs no test, as genes of occupied cells are never
-    set. rules: `modified_genetic.Settings`. scratch: `scratch_for` the field.
+    set. rules: `modified_genetic.Settings`. scratch: `prepare_scratch` the field.
 
     limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than
     the length.
@@ -92,8 +92,8 @@ def validate(
     if pieces == 0:
         return np.inf
     size = 4 if pieces == len(points) - 3 else len(points)
-    sight, least = _at_first_sight(pieces, size, field.room, scratch)
-    if sight == _OCCUPIED or _are_near(points, rules.least_distance):
+    sight, least = _look_at_curve(pieces, size, field.room, scratch)
+    if sight == _OCCUPIED or _is_near(points, rules.least_distance):
         return np.inf
     if sight == _FREE and least > limit:
         return least
@@ -103,12 +103,12 @@ def validate(
     x, y = scratch.x[:count], scratch.y[:count]
     if sight == _UNKNOWN:
         count = write_touched_cells(x, y, scratch.columns, scratch.rows)
-        if occupied_cells(scratch.columns[:count], scratch.rows[:count], field.occupied) > 0:
+        if count_occupied_cells(scratch.columns[:count], scratch.rows[:count], field.occupied) > 0:
             return np.inf  # `Valid Path`
     return sum_of_steps(x, y, scratch.t)
 
 
-@inlined
+@compile_inline
 def _write_pieces(points, curve, room, scratch):
     """Write the pieces of a curve that are walked one after another; returns their number, or 0 if
     an end of one is in an occupied cell.
@@ -122,7 +122,7 @@ def _write_pieces(points, curve, room, scratch):
         x, y, ends = scratch.x, scratch.y, QUARTERS * pieces - 1
         write_samples(points, ends + 1, 1, 1, ends, x, y, scratch.t, scratch.power)
         for i in range(ends):
-            if _reach(x[i], y[i], room) == 0:
+            if _count_free_samples(x[i], y[i], room) == 0:
                 return 0
     for i in range(len(points)):
         for axis in range(2):
@@ -131,8 +131,8 @@ def _write_pieces(points, curve, room, scratch):
     return pieces
 
 
-@inlined
-def _are_near(points, least_distance):
+@compile_inline
+def _is_near(points, least_distance):
     """Return whether two control points are closer than a distance (`Distance Threshold`)."""
     for i in range(1, len(points) - 1):
         for j in range(1, i):
@@ -142,15 +142,15 @@ def _are_near(points, least_distance):
     return False
 
 
-@inlined
-def _at_first_sight(pieces, size, room, scratch):
+@compile_inline
+def _look_at_curve(pieces, size, room, scratch):
     """What a walk over the cells of a curve would find, if a look at some of its samples tells:
     `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; and a length that the polyline through its samples
     has at least.
     """
     sight, least = _FREE, 0.0
     for k in range(pieces):
-        seen, chords = _sight_of_piece(
+        seen, chords = _look_at_piece(
             scratch.pieces[k, :size], max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
         )
         if seen == _OCCUPIED:
@@ -161,24 +161,24 @@ def _at_first_sight(pieces, size, room, scratch):
     return sight, least
 
 
-@inlined
-def _sight_of_piece(piece, least_parts, room, scratch):
-    """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only
+@compile_inline
+def _look_at_piece(piece, least_parts, room, scratch):
+    """`_look_at_curve` of a piece: first of the ends of at least so many equal parts (fewer only
     if there are fewer samples), then of all samples of those parts that come too close to obstacles
     to tell.
     """
-    last = parts(piece)
+    last = count_parts(piece)
     stride = max(1, last // least_parts)
     ends = -(-last // stride) + 1
     x, y, reach = scratch.x, scratch.y, scratch.columns
     write_samples(piece, last, 0, stride, last // stride + 1, x, y, scratch.t, scratch.power)
     x[ends - 1], y[ends - 1] = piece[-1, 0], piece[-1, 1]
     for i in range(ends):
-        reach[i] = _reach(x[i], y[i], room)
+        reach[i] = _count_free_samples(x[i], y[i], room)
         if reach[i] == 0:
             return _OCCUPIED, 0.0
     sight = _FREE
-    away = _from_chords(piece, last / stride)
+    away = _bound_distance_from_chords(piece, last / stride)
     first = 0
     while first < ends - 1:
         after = first
@@ -189,7 +189,7 @@ def _sight_of_piece(piece, least_parts, room, scratch):
             write_samples(
                 piece, last, begin, 1, count, x[ends:], y[ends:], scratch.t, scratch.power
             )
-            seen = _sight_of_samples(x[ends : ends + count], y[ends : ends + count], room)
+            seen = _look_at_samples(x[ends : ends + count], y[ends : ends + count], room)
             if seen == _OCCUPIED:
                 return _OCCUPIED, 0.0
             if seen == _UNKNOWN:
@@ -199,7 +199,7 @@ def _sight_of_piece(piece, least_parts, room, scratch):
 
 
 @allocation_free
-def _from_chords(piece, count):
+def _bound_distance_from_chords(piece, count):
     """How far a piece, cut into `count` parts of equal length in the parameter, gets at most from
     points at the same parameters on their chords, along x or y: an eighth of the second derivative
     at most, times the square of a part's length.
@@ -222,25 +222,27 @@ def _is_free_part(x, y, reach, i, away):
 
 
 @allocation_free
-def _sight_of_samples(x, y, room):
-    """`_at_first_sight` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE`
+def _look_at_samples(x, y, room):
+    """`_look_at_curve` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE`
     if the cells of all are free, as well as those whose corner a step between two samples may cut.
     After one with free cells all around it the next ones need no look.
     """
     sight = _FREE
     s = 0
     while s < len(x):
-        reach = _reach(x[s], y[s], room)
+        reach = _count_free_samples(x[s], y[s], room)
         if reach == 0:
             return _OCCUPIED
-        if reach < 0 or (reach == 1 and s > 0 and _may_cut(x[s - 1], y[s - 1], x[s], y[s], room)):
+        if reach < 0 or (
+            reach == 1 and s > 0 and _can_cut_corner(x[s - 1], y[s - 1], x[s], y[s], room)
+        ):
             sight = _UNKNOWN
         s += max(reach, 1)
     return sight
 
 
 @allocation_free
-def _reach(x, y, room):
+def _count_free_samples(x, y, room):
     """How many samples from one on, itself included, touch free cells only, whichever way they
     lead: 0 if its cell is occupied, -1 if that cannot be told. A sample on a grid line may count to
     the cell on either side.
@@ -255,7 +257,7 @@ def _reach(x, y, room):
 
 
 @allocation_free
-def _may_cut(x0, y0, x, y, room):
+def _can_cut_corner(x0, y0, x, y, room):
     """Whether the step between two samples, the second of which is within a free cell, may cut the
     corner of an occupied cell.
     """
@@ -264,7 +266,7 @@ def _may_cut(x0, y0, x, y, room):
     if room[before_row, before_column] > 1:
         return False
     return (
-        _reach(x0, y0, room) < 0
+        _count_free_samples(x0, y0, room) < 0
         or room[before_row, int(x)] == 0
         or room[int(y), before_column] == 0
     )
@@ -289,10 +291,10 @@ def _write_piece(points, k, piece):
         piece[3, axis] = goes + (outer - goes) * after / (after + 1)
 
 
-@inlined
+@compile_inline
 def _write_samples_of_piece(piece, place, scratch):
     """Write x and y of a piece's samples from a place on; returns their number."""
     x, y = scratch.x[place:], scratch.y[place:]
-    last = parts(piece)
+    last = count_parts(piece)
     write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)
     return last + 1

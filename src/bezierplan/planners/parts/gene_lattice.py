@@ -33,7 +33,7 @@ class Field(NamedTuple):
     target: tuple[float, float]
 
 
-def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
+def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
     """Return the genes of a grid, in the order in which they are joined; ends: (2, 2) both ends in
     cells.
 
@@ -79,7 +79,7 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
     )
 
 
-def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
+def find_genes_at(points: np.ndarray, field: Field) -> np.ndarray:
     """The free genes, ascending, in whose cells some points (n, 2) lie, in cells; without those
     behind the start, to which a robot that has passed them would drive back.
     """
@@ -89,7 +89,7 @@ def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
     return np.unique(genes[(apart.min(axis=1) < 0.5) & field.settable[genes] & ahead])
 
 
-def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
+def build_polygon(ones: np.ndarray, field: Field) -> np.ndarray:
     """Return start, the control points of a chromosome, and target: (points, 2)."""
     points = np.empty((len(ones) + 2, 2))
     write_polygon(ones, field, points)
@@ -98,7 +98,7 @@ def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
 
 @allocation_free
 def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray) -> int:
-    """Write the `polygon` of a chromosome (n,) to the first n + 2 of some points; returns their
+    """Write the polygon of a chromosome (n,) to the first n + 2 of some points, and return their
     number.
     """
     count = len(ones)

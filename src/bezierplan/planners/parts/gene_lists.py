@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners.parts.diversity import q_statistic, shared
-from bezierplan.planners.parts.genetic import same
+from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.planners.parts.diversity import compute_q_statistic, count_shared
+from bezierplan.planners.parts.genetic import is_same
 from bezierplan.planners.parts.sorting import sort
 
 
@@ -24,8 +24,8 @@ class Pool(NamedTuple):
     cost: np.ndarray
 
 
-@compiled
-def empty_pool(places: int, room: int) -> Pool:
+@compile_kernel
+def prepare_pool(places: int, room: int) -> Pool:
     """A pool with room for `places` chromosomes of `room` genes each."""
     return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places))
 
@@ -38,7 +38,7 @@ def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> No
     pool.count[place], pool.cost[place] = count, cost
 
 
-@compiled
+@compile_kernel
 def select(pool: Pool, survivors: int, fill: int) -> None:
     """Move the best of the first chromosomes to the front, in place; ties in their order."""
     highest = pool.cost[:survivors].max()
@@ -88,7 +88,7 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 
 @allocation_free
-def gap(rng: np.random.Generator, log_stay: float) -> int:
+def draw_gap(rng: np.random.Generator, log_stay: float) -> int:
     """Number of genes left unchanged before the next change; 2**31 stands for more than there are
     genes. log_stay: the logarithm of the probability that a gene does not change.
     """
@@ -117,10 +117,10 @@ def cross(pool: Pool, head: int, tail: int, cut: int, index: np.ndarray, child: 
 
 
 @allocation_free
-def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
+def compute_q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
     """Return the Q statistic of the lists of two chromosomes of `genes` genes."""
-    both = shared(one, other)
-    return q_statistic(
+    both = count_shared(one, other)
+    return compute_q_statistic(
         both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both
     )
 
@@ -137,8 +137,8 @@ class Kinds(NamedTuple):
     marked: np.ndarray
 
 
-@compiled
-def empty_kinds(places: int, genes: int) -> Kinds:
+@compile_kernel
+def prepare_kinds(places: int, genes: int) -> Kinds:
     """Return room for the kinds of a pool of `places` chromosomes of `genes` genes."""
     return Kinds(
         np.empty(places, np.int64),
@@ -165,7 +165,7 @@ def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> 
 
 
 @allocation_free
-def mean_q(kinds: Kinds, count: int, fill: int) -> float:
+def compute_mean_q(kinds: Kinds, count: int, fill: int) -> float:
     """Return the mean Q of all pairs of `fill` chromosomes of `count` kinds; that of two equal ones
     is 1.
     """
@@ -181,7 +181,7 @@ def mean_q(kinds: Kinds, count: int, fill: int) -> float:
 @allocation_free
 def _is_kind(pool, place, head):
     """Return whether two places hold equal chromosomes, whose costs are then equal."""
-    return pool.cost[place] == pool.cost[head] and same(
+    return pool.cost[place] == pool.cost[head] and is_same(
         pool.ones[place, : pool.count[place]], pool.ones[head, : pool.count[head]]
     )
 
@@ -198,7 +198,7 @@ def _add_kind(pool, place, kind, kinds):
         for k in range(pool.count[head]):
             both += kinds.marked[pool.ones[head, k]]
         only_one, only_other = len(ones) - both, pool.count[head] - both
-        kinds.q[kind, other] = q_statistic(
+        kinds.q[kind, other] = compute_q_statistic(
             both, genes - both - only_one - only_other, only_one, only_other
         )
     for gene in ones:
@@ -209,22 +209,22 @@ def _add_kind(pool, place, kind, kinds):
 _REMEMBERED = 1024
 
 
-@compiled
-def empty_memory(room: int) -> Pool:
+@compile_kernel
+def prepare_memory(room: int) -> Pool:
     """A memory of the costs of chromosomes of `room` genes each; newer ones replace older ones."""
-    memory = empty_pool(_REMEMBERED, room)
+    memory = prepare_pool(_REMEMBERED, room)
     memory.count[:] = -1
     return memory
 
 
 @allocation_free
-def entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
+def find_entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
     """The place of a chromosome in a memory, and whether it is there."""
     mixed = np.uint64(len(ones))
     for gene in ones:
         mixed = (mixed ^ np.uint64(gene)) * np.uint64(0x9E3779B97F4A7C15)
         mixed ^= mixed >> np.uint64(29)
     place = np.int64(mixed & np.uint64(_REMEMBERED - 1))
-    return place, memory.count[place] == len(ones) and same(
+    return place, memory.count[place] == len(ones) and is_same(
         ones, memory.ones[place, : memory.count[place]]
     )

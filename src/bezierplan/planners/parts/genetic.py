@@ -8,8 +8,8 @@ chromosome say so; no function keeps state.
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners.parts.random_integers import integer
+from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.planners.parts.random_integers import draw_integer
 
 # Maximum number of draws of a bit until the flipped gene is an allele; after that, the gene stays
 # as it is.
@@ -49,8 +49,8 @@ def copy(source: np.ndarray, target: np.ndarray) -> None:
         target[k] = source[k]
 
 
-@compiled
-def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
+@compile_kernel
+def draw_parents(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
     """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above
     0 (song2016, eq. 10).
     """
@@ -78,7 +78,7 @@ def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> No
         first[later], second[later] = second[later], first[later]
 
 
-@compiled
+@compile_kernel
 def breed(
     rng: np.random.Generator,
     parents: np.ndarray,
@@ -95,19 +95,19 @@ def breed(
 
     margin: number of fixed genes at both ends. unit: number of bits whose multiples are cut.
     """
-    drawn = roulette(rng, 1.0 / cost, len(cost))
+    drawn = draw_parents(rng, 1.0 / cost, len(cost))
     for i in range(len(drawn)):
         copy(parents[drawn[i]], children[i])
     inner = children[:, margin : children.shape[1] - margin]
     cuts = bits * inner.shape[1] // unit
     for i in range(0, len(drawn), 2):
         if rng.random() < probability and cuts > 1:
-            swap_tails(inner[i], inner[i + 1], unit * integer(rng, 1, cuts), bits)
+            swap_tails(inner[i], inner[i + 1], unit * draw_integer(rng, 1, cuts), bits)
     return drawn
 
 
 @allocation_free
-def same(one: np.ndarray, other: np.ndarray) -> bool:
+def is_same(one: np.ndarray, other: np.ndarray) -> bool:
     """Whether two chromosomes, or lists of genes, are equal."""
     if len(one) != len(other):
         return False
@@ -130,7 +130,7 @@ def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.nd
     """Replace, in place, one random gene of a chromosome by a random allele, which may equal the
     old gene.
     """
-    chromosome[integer(rng, 0, len(chromosome))] = alleles[integer(rng, 0, len(alleles))]
+    chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[draw_integer(rng, 0, len(alleles))]
 
 
 @allocation_free
@@ -143,7 +143,7 @@ def flip_bit(
     """
     before = chromosome[gene]
     for _ in range(_FLIP_TRIES):
-        complement_bit(chromosome, gene * bits + integer(rng, 0, bits), bits)
+        complement_bit(chromosome, gene * bits + draw_integer(rng, 0, bits), bits)
         if legal[chromosome[gene]]:
             return
         chromosome[gene] = before

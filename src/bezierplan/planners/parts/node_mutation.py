@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, inlined
-from bezierplan.planners.parts.random_integers import below
+from bezierplan.kernels import allocation_free, compile_inline
+from bezierplan.planners.parts.random_integers import draw_below
 from bezierplan.workspaces.ground import (
     Ground,
     edge_energy,
@@ -43,31 +43,31 @@ def mutate(
     (MOST_NEIGHBOURS,) scratch.
     """
     if rules.mutation == Mutation.random:
-        path[1 + below(rng, len(path) - 2)] = alleles[below(rng, len(alleles))]
+        path[1 + draw_below(rng, len(path) - 2)] = alleles[draw_below(rng, len(alleles))]
         return 0
     if rules.mutation == Mutation.random_repair:
-        return _random_repair(rng, path, alleles, ground)
+        return _mutate_until_feasible(rng, path, alleles, ground)
     if rules.mutation == Mutation.ref21:
-        return _ref21(rng, path, ground, rules, neighbours)
+        return _mutate_as_reference_21(rng, path, ground, rules, neighbours)
     k = (
-        _blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
+        _draw_blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
         if rules.mutation == Mutation.proposed
         else 0
     )
     if k == 0:
         if rules.mutation == Mutation.proposed and rules.without_obstacle == WithoutObstacle.none:
             return 0
-        k = 1 + below(rng, len(path) - 2)
-    return _best_neighbour(path, k, ground, rules, neighbours)
+        k = 1 + draw_below(rng, len(path) - 2)
+    return _move_to_best_neighbour(path, k, ground, rules, neighbours)
 
 
 @allocation_free
-def _random_repair(rng, path, alleles, ground):
+def _mutate_until_feasible(rng, path, alleles, ground):
     """Random mutation, repeated until the path is feasible."""
     for _ in range(_MOST_REPAIRS):
-        k = 1 + below(rng, len(path) - 2)
+        k = 1 + draw_below(rng, len(path) - 2)
         before = path[k]
-        path[k] = alleles[below(rng, len(alleles))]
+        path[k] = alleles[draw_below(rng, len(alleles))]
         if obstacles_along(path, ground) == 0:
             return 0
         path[k] = before
@@ -75,16 +75,16 @@ def _random_repair(rng, path, alleles, ground):
 
 
 @allocation_free
-def _blocked_node(rng, path, ground, beside_obstacle):
+def _draw_blocked_node(rng, path, ground, beside_obstacle):
     """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
     count = 0
     for k in range(1, len(path) - 1):
-        count += _encounters(path, k, ground, beside_obstacle)
+        count += _has_obstacle(path, k, ground, beside_obstacle)
     if count == 0:
         return 0
-    chosen = below(rng, count)
+    chosen = draw_below(rng, count)
     for k in range(1, len(path) - 1):
-        if _encounters(path, k, ground, beside_obstacle):
+        if _has_obstacle(path, k, ground, beside_obstacle):
             if chosen == 0:
                 return k
             chosen -= 1
@@ -92,7 +92,7 @@ def _blocked_node(rng, path, ground, beside_obstacle):
 
 
 @allocation_free
-def _encounters(path, k, ground, beside_obstacle):
+def _has_obstacle(path, k, ground, beside_obstacle):
     """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight
     cells around the node is occupied.
     """
@@ -103,7 +103,7 @@ def _encounters(path, k, ground, beside_obstacle):
 
 
 @allocation_free
-def _best_neighbour(path, k, ground, rules, neighbours):
+def _move_to_best_neighbour(path, k, ground, rules, neighbours):
     """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4;
     reference 12).
 
@@ -112,17 +112,17 @@ def _best_neighbour(path, k, ground, rules, neighbours):
     count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     best, least = path[k], np.inf
     if rules.keep_better:
-        least = _cost_through(path, k, path[k], ground, rules.penalty)
+        least = _compute_cost_through(path, k, path[k], ground, rules.penalty)
     for cell in neighbours[:count]:
-        cost = _cost_through(path, k, cell, ground, rules.penalty)
+        cost = _compute_cost_through(path, k, cell, ground, rules.penalty)
         if cost < least - _TIE:
             best, least = cell, cost
     path[k] = best
     return count
 
 
-@inlined
-def _cost_through(path, k, cell, ground, penalty):
+@compile_inline
+def _compute_cost_through(path, k, cell, ground, penalty):
     """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
     encounters = obstacles_on(ground, path[k - 1], cell) + obstacles_on(ground, cell, path[k + 1])
     return (
@@ -133,18 +133,18 @@ def _cost_through(path, k, cell, ground, penalty):
 
 
 @allocation_free
-def _ref21(rng, path, ground, rules, neighbours):
+def _mutate_as_reference_21(rng, path, ground, rules, neighbours):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies
     in the direction of the target and whose two edges are free (reference 21).
     """
-    k = 1 + below(rng, len(path) - 2)
+    k = 1 + draw_below(rng, len(path) - 2)
     count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     for tried in range(count):
-        chosen = tried + below(rng, count - tried)
+        chosen = tried + draw_below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
         if (
-            _towards(path[0], cell, path[-1], ground.occupied.shape[1])
+            _is_towards(path[0], cell, path[-1], ground.occupied.shape[1])
             and obstacles_on(ground, path[k - 1], cell) == 0
             and obstacles_on(ground, cell, path[k + 1]) == 0
         ):
@@ -154,7 +154,7 @@ def _ref21(rng, path, ground, rules, neighbours):
 
 
 @allocation_free
-def _towards(start, cell, target, columns):
+def _is_towards(start, cell, target, columns):
     """Whether a cell's direction to the target makes less than a right angle with that from the
     start to the target.
     """

@@ -60,23 +60,25 @@ class Objective(NamedTuple):
 
 
 @cache
-def basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+def compute_basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of start and target (2, samples) and of the free control points (n, samples) at the
     samples of a curve.
     """
     weights = curves.sample_matrix(curve, control_points + 2, samples).T
     # A copy, since numba would compile all kernels once more for an array that is read-only.
-    return weights[list(curves.ends(curve))], weights[free(curve, control_points)].copy()
+    return weights[list(curves.ends(curve))], weights[
+        find_free_points(curve, control_points)
+    ].copy()
 
 
 @cache
-def free(curve: str, control_points: int) -> np.ndarray:
+def find_free_points(curve: str, control_points: int) -> np.ndarray:
     """Which control points of a curve are free (n,)."""
     return np.delete(np.arange(control_points + 2), curves.ends(curve))
 
 
 @allocation_free
-def fitness(length: float, violation: float, objective: Objective) -> float:
+def compute_fitness(length: float, violation: float, objective: Objective) -> float:
     """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which
     leaves the penalty open).
     """
@@ -110,7 +112,7 @@ def write_curve(particle: np.ndarray, objective: Objective, curve: np.ndarray) -
 
 
 @allocation_free
-def least_length(curve: np.ndarray) -> float:
+def bound_length(curve: np.ndarray) -> float:
     """No more than the length of a curve (2, samples): that of four chords."""
     last = curve.shape[1] - 1
     total = 0.0
@@ -123,7 +125,7 @@ def least_length(curve: np.ndarray) -> float:
 
 
 @allocation_free
-def length(curve: np.ndarray, chords: np.ndarray) -> float:
+def measure_length(curve: np.ndarray, chords: np.ndarray) -> float:
     """Length of the polyline through the samples of a curve (2, samples) (tharwat2018, eq. 19).
 
     chords: (samples,) scratch.
@@ -155,7 +157,7 @@ def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
     return np.column_stack([workspace.centres, workspace.radii + d_min])
 
 
-def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygonal:
+def grow_polygons(workspace: Circles | Polygons, d_min: float) -> Polygonal:
     """The polygons of a workspace, grown by a distance in units; none among circles."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
         return Polygonal(
@@ -165,7 +167,7 @@ def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygona
 
     shapes = [shapely.Polygon(outer, holes).buffer(d_min) for outer, *holes in workspace.obstacles]
     edges = [
-        np.concatenate([_sides(ring) for ring in (shape.exterior, *shape.interiors)])
+        np.concatenate([_list_sides(ring) for ring in (shape.exterior, *shape.interiors)])
         for shape in shapes
     ]
     return Polygonal(
@@ -177,14 +179,16 @@ def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygona
     )
 
 
-def _sides(ring: "LinearRing") -> np.ndarray:
+def _list_sides(ring: "LinearRing") -> np.ndarray:
     """The sides (n, 4) of a ring."""
     corners = np.array(ring.coords)
     return np.hstack([corners[:-1], corners[1:]])
 
 
 @allocation_free
-def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
+def measure_violation(
+    curve: np.ndarray, objective: Objective, scratch: np.ndarray
+) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a
@@ -192,14 +196,14 @@ def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> t
 
     curve: (2, samples). scratch: (samples,) or longer.
     """
-    of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
-    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
+    of_balls, in_balls = _measure_among_balls(curve, objective.balls, scratch)
+    of_polygons, in_polygons = _measure_among_polygons(curve[0], curve[1], objective.polygons)
     return of_balls + of_polygons, in_balls + in_polygons
 
 
 @allocation_free
-def _among_polygons(x, y, polygons):
-    """The parts of `violation` for polygons."""
+def _measure_among_polygons(x, y, polygons):
+    """The parts of `measure_violation` for polygons."""
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(polygons.deepest)):
@@ -213,7 +217,7 @@ def _among_polygons(x, y, polygons):
         depths = 0.0
         for s in range(samples):
             if left < x[s] < right and bottom < y[s] < top:
-                depth = _depth(x[s], y[s], edges)
+                depth = _measure_depth(x[s], y[s], edges)
                 depths += depth / polygons.deepest[o]
                 colliding += depth > 0.0
         total += depths / samples
@@ -221,7 +225,7 @@ def _among_polygons(x, y, polygons):
 
 
 @allocation_free
-def _depth(x, y, edges):
+def _measure_depth(x, y, edges):
     """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to
     the right crosses an even number of edges.
     """
@@ -242,8 +246,8 @@ def _depth(x, y, edges):
 
 
 @allocation_free
-def _among_balls(curve, balls, squares):
-    """The parts of `violation` for circles (obstacles, 3)."""
+def _measure_among_balls(curve, balls, squares):
+    """The parts of `measure_violation` for circles (obstacles, 3)."""
     samples = curve.shape[1]
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0

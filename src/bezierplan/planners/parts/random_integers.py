@@ -9,7 +9,7 @@ from bezierplan.kernels import allocation_free
 
 
 @allocation_free
-def integer(rng: np.random.Generator, low: int, high: int) -> int:
+def draw_integer(rng: np.random.Generator, low: int, high: int) -> int:
     """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times
     faster; high - low must lie between 1 and 2**32 - 1.
     """
@@ -22,6 +22,6 @@ def integer(rng: np.random.Generator, low: int, high: int) -> int:
 
 
 @allocation_free
-def below(rng: np.random.Generator, count: int) -> int:
+def draw_below(rng: np.random.Generator, count: int) -> int:
     """A uniform integer below `count` from a single random number of `rng.random`."""
     return int(rng.random() * count)

@@ -92,7 +92,7 @@ class Setting(NamedTuple):
         return float(value) if self.kind is float else value
 
 
-def setting(annotation: Any) -> Setting:
+def read_setting(annotation: Any) -> Setting:
     """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`,
     `float`, a `Literal` or an `IntEnum`, or one of these `Annotated` with a `Range` and an `About`.
     """
@@ -112,7 +112,7 @@ def setting(annotation: Any) -> Setting:
     return Setting(annotation, (), limits, about)
 
 
-def setting_fault(declaration: Setting, value: Any) -> str | None:
+def find_setting_fault(declaration: Setting, value: Any) -> str | None:
     """What is expected instead of a setting's value, or None if the value is valid."""
     if declaration.words:
         return None if value in declaration.words else str(declaration)
@@ -130,13 +130,15 @@ def setting_fault(declaration: Setting, value: Any) -> str | None:
     )
 
 
-def settings_of(plan: Callable[..., Any]) -> dict[str, Setting]:
+def list_settings(plan: Callable[..., Any]) -> dict[str, Setting]:
     """Settings of a planner's function `plan`, its keyword-only arguments, by name and in their
     order. Raises TypeError or NameError for an annotation that declares none.
     """
     parameters = inspect.signature(plan, eval_str=True).parameters.values()
     return {
-        each.name: setting(each.annotation) for each in parameters if each.kind is each.KEYWORD_ONLY
+        each.name: read_setting(each.annotation)
+        for each in parameters
+        if each.kind is each.KEYWORD_ONLY
     }
 
 
@@ -144,13 +146,13 @@ T = TypeVar("T", bound=tuple)
 
 
 @cache
-def _declared(settings: type) -> dict[str, Setting]:
-    return {name: setting(annotation) for name, annotation in settings.__annotations__.items()}
+def _list_declared(settings: type) -> dict[str, Setting]:
+    return {name: read_setting(annotation) for name, annotation in settings.__annotations__.items()}
 
 
-def filled(settings: type[T], values: dict[str, Any]) -> T:
+def fill_settings(settings: type[T], values: dict[str, Any]) -> T:
     """A class of settings with values by name. Raises TypeError for a missing or unknown name."""
-    declared = _declared(settings)
+    declared = _list_declared(settings)
     return settings(
         **{
             name: declared[name].number(value) if name in declared else value
@@ -159,11 +161,11 @@ def filled(settings: type[T], values: dict[str, Any]) -> T:
     )
 
 
-def in_cells(settings: T, cell: float) -> T:
+def convert_to_cells(settings: T, cell: float) -> T:
     """The same settings for kernels that count in cells: units are divided by a cell's side."""
     lengths = [
         name
-        for name, each in _declared(type(settings)).items()
+        for name, each in _list_declared(type(settings)).items()
         if each.about and each.about.unit == UNITS
     ]
     return settings._replace(**{name: getattr(settings, name) / cell for name in lengths})
@@ -183,7 +185,7 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
             parts: list[dict[str, Any]] = [{} for _ in classes]
             for name, value in values.items():
                 parts[place.get(name, 0)][name] = value
-            return plan(problem, rng, *map(filled, classes, parts), *further)
+            return plan(problem, rng, *map(fill_settings, classes, parts), *further)
 
         signature = inspect.signature(plan)
         kept = list(signature.parameters.values())
@@ -201,7 +203,7 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
         told = [
             f"{name} : {each}\n    {each.meaning}"
             for part in classes
-            for name, each in _declared(part).items()
+            for name, each in _list_declared(part).items()
         ]
         planned.__doc__ = "\n".join(
             [inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told]

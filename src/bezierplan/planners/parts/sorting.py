@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 
 
-@compiled
+@compile_kernel
 def ascending(values: np.ndarray) -> np.ndarray:
     """Indices (n,) that sort values in ascending order, ties in their original order: numpy's
     stable argsort, which takes far longer to compile.

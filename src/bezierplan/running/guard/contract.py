@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import region
-from bezierplan.planners import Plan, is_file, known_planners
+from bezierplan.geometry.region import build_region
+from bezierplan.planners import Plan, is_file, list_planners
 from bezierplan.running import answer
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain, process, worker
@@ -76,29 +76,29 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFi
     Raises Fault, in one line, before the first finding: for a file that is not a planner, and for
     missing or invalid settings.
     """
-    if not is_file(planner) and planner not in known_planners():
+    if not is_file(planner) and planner not in list_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
-            f".py{closest(planner, known_planners())}"
+            f".py{closest(planner, list_planners())}"
         )
-    module = interface.loaded(planner, planner)
+    module = interface.load_planner_module(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")
     interface.check_settings(module, settings, f"{planner}: settings")
-    return _findings(planner, module, settings)
+    return _find_faults(planner, module, settings)
 
 
 # --------------------------------------------------------------------------------------------------
 # The problems
 
 
-def problems(module: ModuleType) -> Iterator[Problem]:
+def list_problems(module: ModuleType) -> Iterator[Problem]:
     """The problems of a planner, on the kinds of workspace that it serves in turn."""
     kinds = cycle(getattr(module, "workspaces", interface.KINDS.values()))
     for (title, rows), kind in zip(_PICTURES.items(), kinds):
-        yield drawn_problem(kind, title, rows)
+        yield build_drawn_problem(kind, title, rows)
 
 
-def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
+def build_drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
     """A picture as a problem on a kind of workspace."""
     cell = _CELLS.get(title, 1.0)
     lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
@@ -122,10 +122,10 @@ def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
 # Facts
 
 
-def _findings(
+def _find_faults(
     planner: str, module: ModuleType, settings: dict[str, Any]
 ) -> Iterator[ContractFinding]:
-    by_name = {problem.name: problem for problem in problems(module)}
+    by_name = {problem.name: problem for problem in list_problems(module)}
     keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
     exact, names = getattr(module, "exact", False), {*TAKEN, *settings}
     plans_of: dict[str, list[Plan]] = {}
@@ -133,7 +133,7 @@ def _findings(
     for name, problem in by_name.items():
         # A slow planner's findings come one problem after the other.
         try:
-            (made,) = replies(planner, settings, {name: problem}, SEEDS).values()
+            (made,) = run_planner(planner, settings, {name: problem}, SEEDS).values()
         except PlannerFailure as failure:
             yield ContractFinding(name, "plan", False, str(failure).splitlines()[0])
             continue
@@ -142,19 +142,19 @@ def _findings(
         first = next(iter(plans_of.values()))[0]
         for fact, detail, fault in (
             ("plan", *_is_valid(plans, problem, names, first, is_file(planner))),
-            ("history", "", _history_fault(plans, keeps_best)),
-            ("budget", *_budget(plans, budget)),
-            ("claims", *_claims(plans, problem, exact)),
-            ("random numbers", "", _repeats(plans[0], plans[1])),
+            ("history", "", _check_history(plans, keeps_best)),
+            ("budget", *_check_budget(plans, budget)),
+            ("claims", *_check_claims(plans, problem, exact)),
+            ("random numbers", "", _compare_repeats(plans[0], plans[1])),
         ):
             yield ContractFinding(name, fact, not fault, fault or detail)
     if not plans_of:
         return
     if is_file(planner):
         met = {name: by_name[name] for name in plans_of}
-        for name, (there,) in replies(planner, settings, met, SEEDS[:1], 1).items():
+        for name, (there,) in run_planner(planner, settings, met, SEEDS[:1], 1).items():
             one, again, *_ = plans_of[name]
-            if not _repeats(one, again) and _repeats(one, there.result):
+            if not _compare_repeats(one, again) and _compare_repeats(one, there.result):
                 yield ContractFinding(name, "random numbers", False, ELSEWHERE)
     differ = any(len({*map(repr, plans[1:])}) > 1 for plans in plans_of.values())
     if getattr(module, "deterministic", False):
@@ -165,7 +165,7 @@ def _findings(
     yield ContractFinding("all problems", "random numbers", passed, said)
 
 
-def replies(
+def run_planner(
     planner: str,
     settings: dict[str, Any],
     by_name: dict[str, Problem],
@@ -179,13 +179,13 @@ def replies(
     tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
     by_problem: dict[str, list[worker.Reply]] = {}
     for reply in (
-        process.isolated_replies(work, tasks, (), name, LIMIT, hashing)
+        process.run_isolated(work, tasks, (), name, LIMIT, hashing)
         if is_file(planner)
-        else worker.replies(work, tasks)
+        else worker.run_tasks(work, tasks)
     ):
         task = tasks[reply.number]
         with answer.of(task.name):
-            plan = answer.plain(reply.result)
+            plan = answer.convert_answer(reply.result)
             by_problem.setdefault(task.problem, []).append(reply._replace(result=plan))
     return by_problem
 
@@ -195,14 +195,14 @@ def _is_valid(
 ) -> tuple[str, str]:
     for plan in plans:
         try:
-            answer.accepted(plan, problem, names)
+            answer.accept_answer(plan, problem, names)
             answer.check_columns(plan, first, finite)
         except answer.Unfit as fault:
             return "", str(fault)
     return f"{sum(plan.path is not None for plan in plans)} paths of {len(plans)} plans", ""
 
 
-def _history_fault(plans: list[Plan], keeps_best: bool) -> str:
+def _check_history(plans: list[Plan], keeps_best: bool) -> str:
     try:
         for plan in plans:
             answer.check_history(plan, keeps_best)
@@ -211,7 +211,7 @@ def _history_fault(plans: list[Plan], keeps_best: bool) -> str:
     return ""
 
 
-def _budget(plans: list[Plan], budget: float) -> tuple[str, str]:
+def _check_budget(plans: list[Plan], budget: float) -> tuple[str, str]:
     """The number of evaluations may differ from generator to generator: a search may end early."""
     used = sorted({plan.evaluations for plan in plans})
     if used[-1] > budget:
@@ -224,11 +224,11 @@ def _budget(plans: list[Plan], budget: float) -> tuple[str, str]:
     return " to ".join(map(str, dict.fromkeys((used[0], used[-1])))) + " evaluations", ""
 
 
-def _claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]:
+def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]:
     """Only a planner that declares itself exact can fail for its claims; no way leads to a sealed
     target.
     """
-    blocked = region(problem.workspace)
+    blocked = build_region(problem.workspace)
     feasible = [
         plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible
         for plan in plans
@@ -240,9 +240,9 @@ def _claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]
     return detail, detail if exact and not all(claims) else ""
 
 
-def _repeats(first: Plan, again: Plan) -> str:
+def _compare_repeats(first: Plan, again: Plan) -> str:
     """What is wrong if two runs with the same generator do not have the same bits."""
-    one, other = ([*map(repr, plain.packed(plan)["Plan"])] for plan in (first, again))
+    one, other = ([*map(repr, plain.pack(plan)["Plan"])] for plan in (first, again))
     field = next((name for name, *two in zip(Plan._fields, one, other) if two[0] != two[1]), "")
     return field and (
         f"{field}: another value from the same generator; all random numbers come from rng, and "

@@ -13,8 +13,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from bezierplan.planners import is_file, planner_module, planner_settings, setting_fault
-from bezierplan.planners.parts.settings import setting
+from bezierplan.planners import find_setting_fault, is_file, load_planner, read_settings
+from bezierplan.planners.parts.settings import read_setting
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, closest
@@ -30,32 +30,32 @@ LIMIT = 60.0
 """Seconds for which a planner's file may be executed when it is imported."""
 
 
-def loaded(planner: str, location: str) -> ModuleType:
+def load_planner_module(planner: str, location: str) -> ModuleType:
     """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with
     a location, unless it can be executed and has the interface of a planner (`planners`).
     """
     if is_file(planner):
         try:
-            _described(planner)
+            _describe_file(planner)
         except PlannerFailure as failure:
             raise Fault(f"{location}: {failure}") from None
-    module, fault = imported(planner)
+    module, fault = import_planner(planner)
     if fault:
         raise Fault(f"{location}: {fault}")
     return module
 
 
-def imported(planner: str) -> tuple[ModuleType | None, str]:
+def import_planner(planner: str) -> tuple[ModuleType | None, str]:
     """The module of a planner, which is executed in this process, and what is wrong with it: empty
     if nothing is.
     """
     try:
-        module = planner_module(planner)
+        module = load_planner(planner)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a user's file can fail in any way
         return None, told(error)
-    return module, interface_fault(module)
+    return module, find_interface_fault(module)
 
 
 class Traits(NamedTuple):
@@ -68,44 +68,44 @@ class Traits(NamedTuple):
     keeps_best: bool
 
 
-def traits(planner: str) -> Traits:
+def read_traits(planner: str) -> Traits:
     """Those of a planner, given as a name or the path of a file, which is not executed in this
     process. Raises PlannerFailure if it cannot be executed.
     """
     if is_file(planner):
         try:
-            return _described(planner)
+            return _describe_file(planner)
         except PlannerFailure as failure:
             raise PlannerFailure(f"planner {planner}: {failure}") from None
-    return _traits(planner_module(planner))
+    return _read_traits(load_planner(planner))
 
 
 @cache
-def _described(planner: str) -> Traits:
+def _describe_file(planner: str) -> Traits:
     """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
     file = str(Path(planner).resolve())
-    work = partial(described, planner=file)
-    (said,) = process.answers(work, "when it is imported", LIMIT)
+    work = partial(describe_in_process, planner=file)
+    (said,) = process.run_function(work, "when it is imported", LIMIT)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)
 
 
-def described(begin: Callable[[str], None], planner: str) -> Iterator[Traits | str]:
+def describe_in_process(begin: Callable[[str], None], planner: str) -> Iterator[Traits | str]:
     """The traits of a planner's file, or what is wrong with it, for a process of its own."""
-    module, fault = imported(planner)
-    yield fault or _traits(module)
+    module, fault = import_planner(planner)
+    yield fault or _read_traits(module)
 
 
-def _traits(module: ModuleType) -> Traits:
+def _read_traits(module: ModuleType) -> Traits:
     return Traits(
-        [*planner_settings(module)],
+        [*read_settings(module)],
         bool(getattr(module, "deterministic", False)),
         bool(getattr(module, "keeps_best", True)),
     )
 
 
-def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
+def ask(function: Callable[..., Any], location: str, *arguments: Any) -> None:
     """Call a planner's `check` or `serves`, which raises ValueError to report a problem, with
     copies. Raises Fault, beginning with a location.
     """
@@ -121,7 +121,7 @@ def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
     raise Fault(f"{location}: {said}")
 
 
-def interface_fault(module: ModuleType) -> str:
+def find_interface_fault(module: ModuleType) -> str:
     """What a module lacks to be a planner; empty if nothing."""
     plan = getattr(module, "plan", None)
     if not callable(plan) or isinstance(plan, type):
@@ -143,7 +143,7 @@ def interface_fault(module: ModuleType) -> str:
                 "a study gives a value to every setting"
             )
         try:
-            setting(parameter.annotation)
+            read_setting(parameter.annotation)
         except TypeError:
             annotated = f"is annotated with {inspect.formatannotation(parameter.annotation)}"
             if parameter.annotation is parameter.empty:
@@ -154,12 +154,12 @@ def interface_fault(module: ModuleType) -> str:
             )
     if isinstance(extra := getattr(module, "extra", ()), str):
         return f"extra: {extra!r}: expected a tuple of names, such as ({extra!r},)"
-    return _workspaces_fault(getattr(module, "workspaces", ()))
+    return _find_workspaces_fault(getattr(module, "workspaces", ()))
 
 
 def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> None:
     """Raise Fault, beginning with a location, for a name that is no setting of a planner."""
-    known = planner_settings(module)
+    known = read_settings(module)
     for name in names:
         check_known(name, known, location)
 
@@ -169,7 +169,7 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
     planner's own `check` accepts them. Names of no setting are ignored. Raises Fault, beginning
     with a location.
     """
-    declared = planner_settings(module)
+    declared = read_settings(module)
     missing = {name: each for name, each in declared.items() if name not in settings}
     if missing:
         explained = [
@@ -178,13 +178,13 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
         ]
         raise Fault(f"{location} are missing: {'; '.join(explained)}")
     for name, each in declared.items():
-        if wanted := setting_fault(each, settings[name]):
+        if wanted := find_setting_fault(each, settings[name]):
             raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")
     if hasattr(module, "check"):
-        asked(module.check, location, settings)
+        ask(module.check, location, settings)
 
 
-def _workspaces_fault(kinds: Any) -> str:
+def _find_workspaces_fault(kinds: Any) -> str:
     if not isinstance(kinds, tuple | list):
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
     for kind in kinds:

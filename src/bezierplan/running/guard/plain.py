@@ -16,22 +16,22 @@ _KINDS = {each.__name__: each for each in (Plan, Path, Motion, DrivePlan, Ride)}
 _ARRAY = "Array"
 
 
-def packed(value: Any) -> Any:
+def pack(value: Any) -> Any:
     """A value as text can hold it."""
     if isinstance(value, np.ndarray):
         return {_ARRAY: value.astype(float).tolist()}
     if isinstance(value, tuple(_KINDS.values())):
-        return {type(value).__name__: [*map(packed, value)]}
-    return [*map(packed, value)] if isinstance(value, list) else value
+        return {type(value).__name__: [*map(pack, value)]}
+    return [*map(pack, value)] if isinstance(value, list) else value
 
 
-def unpacked(value: Any) -> Any:
+def unpack(value: Any) -> Any:
     """The value that was packed. Raises TypeError or ValueError for what is none."""
     if isinstance(value, list):
-        return [*map(unpacked, value)]
+        return [*map(unpack, value)]
     if not isinstance(value, dict) or len(value) != 1:
         return value
     ((kind, parts),) = value.items()
     if kind == _ARRAY:
         return np.array(parts, dtype=float)
-    return _KINDS[kind](*map(unpacked, parts)) if kind in _KINDS else value
+    return _KINDS[kind](*map(unpack, parts)) if kind in _KINDS else value

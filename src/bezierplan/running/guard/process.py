@@ -24,7 +24,7 @@ from typing import Any
 from bezierplan.machine import opened
 from bezierplan.places import PACKAGE
 from bezierplan.running.guard import plain, worker
-from bezierplan.running.jobs.watchdog import PlannerFailure, how_ended
+from bezierplan.running.jobs.watchdog import PlannerFailure, describe_end
 
 logger = logging.getLogger(__name__)
 
@@ -37,7 +37,7 @@ _STARTS = 60
 """Seconds that a process of runs has at least to start."""
 
 
-def isolated_replies(
+def run_isolated(
     work: worker.Work,
     tasks: Sequence[worker.Task],
     again: Sequence[worker.Task],
@@ -45,21 +45,21 @@ def isolated_replies(
     limit: float | None = None,
     hashing: int = 0,
 ) -> Iterator[worker.Reply]:
-    """`worker.replies` in a process of its own, with plain values; before them that of the last of
-    `again` in a process with another seed of `hash`. hashing: that seed. Raises
-    PlannerFailure as `answers` does.
+    """`worker.run_tasks` in a process of its own, with plain values; before them that of the last
+    of `again` in a process with another seed of `hash`. hashing: that seed. Raises PlannerFailure
+    as `run_function` does.
     """
     if again:
-        for each in isolated_replies(work, again[-1:], (), name, limit, hashing + 1):
+        for each in run_isolated(work, again[-1:], (), name, limit, hashing + 1):
             yield each._replace(number=-1)
     work = work._replace(planner=str(Path(work.planner).resolve()))
-    todo = partial(worker.plain_answers, work=work, tasks=tasks, again=again)
-    for each in answers(todo, name, limit, hashing, _STARTS):
+    todo = partial(worker.yield_plain_answers, work=work, tasks=tasks, again=again)
+    for each in run_function(todo, name, limit, hashing, _STARTS):
         reply = worker.Reply(*each)
-        yield reply._replace(result=plain.unpacked(reply.result))
+        yield reply._replace(result=plain.unpack(reply.result))
 
 
-def answers(
+def run_function(
     work: Callable[[Callable[[str], None]], Iterator[Any]],
     name: str,
     limit: float | None = None,
@@ -86,14 +86,14 @@ def answers(
             process = subprocess.Popen(
                 [sys.executable, "-m", worker.__name__, job, lines],
                 cwd=empty,
-                env=os.environ | {"PYTHONHASHSEED": str(hashing), "PYTHONPATH": _path()},
+                env=os.environ | {"PYTHONHASHSEED": str(hashing), "PYTHONPATH": _build_path()},
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
             try:
-                ended = _awaited(process, lines, limit, starts)
+                ended = _await_end(process, lines, limit, starts)
             finally:
                 with suppress(ProcessLookupError, PermissionError):
                     os.killpg(process.pid, signal.SIGKILL)
@@ -102,12 +102,12 @@ def answers(
         return _read(lines, name, ended)
 
 
-def _path() -> str:
+def _build_path() -> str:
     """Where the process finds this package, and what this one's environment names."""
     return os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]))
 
 
-def _awaited(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
+def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
     """How a process has ended; it may take as long as `limit` from one line to
     the next, and at least `starts` until the first.
     """
@@ -116,7 +116,7 @@ def _awaited(process: subprocess.Popen, lines: Path, limit: float | None, starts
         ended, status = os.waitpid(process.pid, os.WNOHANG)
         if ended:
             process.returncode = os.waitstatus_to_exitcode(status)
-            return how_ended(status)
+            return describe_end(status)
         if (now := lines.stat().st_size) != size:
             size, since = now, time.monotonic()
         elif limit is not None:

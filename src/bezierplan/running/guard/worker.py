@@ -19,15 +19,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.machine import opened
-from bezierplan.planners import Plan, planner_module
+from bezierplan.planners import Plan, load_planner
 from bezierplan.running import answer
 from bezierplan.running.guard import plain
-from bezierplan.running.jobs.log import account
+from bezierplan.running.jobs.log import describe_error
 from bezierplan.running.jobs.watchdog import (
     LEFT,
     PlannerFailure,
-    cpu_time,
     end_with_parent,
+    measure_cpu_time,
 )
 from bezierplan.running.simulation import robot
 from bezierplan.running.simulation.policy import Policy
@@ -90,15 +90,15 @@ class Work(NamedTuple):
 
     def once(self, task: Task, rng: np.random.Generator) -> Any:
         """A plan, a track or a ride."""
-        module, problem = planner_module(self.planner), self.problems[task.problem]
+        module, problem = load_planner(self.planner), self.problems[task.problem]
         if self.worlds:
             rules = Policy.model_construct(**self.policy)
-            asked = partial(_planned, module, rng, task.settings, rules.warm)
+            asked = partial(_plan_for_view, module, rng, task.settings, rules.warm)
             return robot.drive(self.worlds[task.problem], problem, rules, asked)
         return getattr(module, self.function)(problem, rng, **task.settings)
 
 
-def _planned(
+def _plan_for_view(
     module: ModuleType,
     rng: np.random.Generator,
     settings: dict[str, Any],
@@ -108,14 +108,14 @@ def _planned(
 ) -> tuple[Plan, Any]:
     """A plan of a robot for what it sees, as plain values, and what the next one gets as last."""
     if not warm:
-        return answer.accepted(module.plan(view, rng, **settings), view), None
+        return answer.accept_answer(module.plan(view, rng, **settings), view), None
     pair = module.resume(view, rng, last, **settings)
     if not isinstance(pair, tuple) or len(pair) != 2:
         raise TypeError(
             f"resume returns a {type(pair).__name__}; expected a Plan and what the next call gets "
             "as last"
         )
-    return answer.accepted(pair[0], view), pair[1]
+    return answer.accept_answer(pair[0], view), pair[1]
 
 
 class Reply(NamedTuple):
@@ -130,7 +130,7 @@ class Reply(NamedTuple):
     drew: bool
 
 
-def replies(
+def run_tasks(
     work: Work,
     tasks: Sequence[Task],
     again: Sequence[Task] = (),
@@ -147,12 +147,12 @@ def replies(
         rng = task.generator()
         try:
             with answer.of(task.name):
-                made = timed(partial(work.once, task, rng))
+                made = time_call(partial(work.once, task, rng))
         except PlannerFailure as failure:
             if not goes_on:
                 raise
             return Reply(number, failure, 0.0, 0.0, True)
-        return Reply(number, *made, drew(task.generator(), rng))
+        return Reply(number, *made, has_drawn(task.generator(), rng))
 
     if again:
         yield from warm_up(partial(one, -len(tasks), again[0]))
@@ -160,7 +160,7 @@ def replies(
         yield one(number, task)
 
 
-def drew(before: np.random.Generator, after: np.random.Generator) -> bool:
+def has_drawn(before: np.random.Generator, after: np.random.Generator) -> bool:
     """Whether random numbers were drawn from a generator: it has gone on in its own sequence, which
     its increment names, or has made others.
     """
@@ -169,11 +169,11 @@ def drew(before: np.random.Generator, after: np.random.Generator) -> bool:
     return goes_on or after.bit_generator.seed_seq.n_children_spawned > 0
 
 
-def timed(once: Callable[[], Any]) -> tuple[Any, float, float]:
+def time_call(once: Callable[[], Any]) -> tuple[Any, float, float]:
     """What a call returns, its CPU seconds and its wall-clock seconds."""
-    cpu, wall = cpu_time(), time.perf_counter()
+    cpu, wall = measure_cpu_time(), time.perf_counter()
     found = once()
-    return found, cpu_time() - cpu, time.perf_counter() - wall
+    return found, measure_cpu_time() - cpu, time.perf_counter() - wall
 
 
 def warm_up(once: Callable[[], Reply]) -> list[Reply]:
@@ -194,19 +194,19 @@ def warm_up(once: Callable[[], Reply]) -> list[Reply]:
 # Work of processes of their own, whose answers are plain values
 
 
-def plain_answers(
+def yield_plain_answers(
     begin: Callable[[str], None], work: Work, tasks: Sequence[Task], again: Sequence[Task]
 ) -> Iterator[Reply | PlannerFailure]:
-    """Yield `replies` with plain values; of a run that fails, what is wrong with it."""
-    for reply in replies(work, tasks, again, begin, goes_on=True):
+    """Yield `run_tasks` with plain values; of a run that fails, what is wrong with it."""
+    for reply in run_tasks(work, tasks, again, begin, goes_on=True):
         task, found = tasks[reply.number], reply.result
         try:
             if isinstance(found, PlannerFailure):
                 raise found
             with answer.of(task.name):
                 if work.function == "plan" and not work.worlds:
-                    found = answer.plain(found)
-            yield reply._replace(result=plain.packed(found))
+                    found = answer.convert_answer(found)
+            yield reply._replace(result=plain.pack(found))
         except PlannerFailure as failure:
             yield failure
 
@@ -215,7 +215,7 @@ def plain_answers(
 # The command
 
 
-def main(job_file: str, lines_file: str) -> None:
+def run_job_file(job_file: str, lines_file: str) -> None:
     """Do what a file says, and append lines to another one; then end, whatever a planner has left
     to do at an exit.
     """
@@ -240,13 +240,13 @@ def main(job_file: str, lines_file: str) -> None:
             for each in work(begin):
                 _refuse_left(name)
                 if isinstance(each, PlannerFailure):
-                    say("fails", [str(each), account(each)])
+                    say("fails", [str(each), describe_error(each)])
                 else:
                     say("answer", each)
         # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
         except BaseException as error:
             text = str(error) if isinstance(error, PlannerFailure) else f"{name}: {told(error)}"
-            say("fails", [text, account(error)])
+            say("fails", [text, describe_error(error)])
         say("done", sorted(opened.SEEN))
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):
@@ -274,4 +274,4 @@ def _refuse_left(name: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    run_job_file(*sys.argv[1:])

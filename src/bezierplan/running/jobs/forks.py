@@ -24,7 +24,7 @@ from functools import partial
 from typing import Any, TextIO
 
 from bezierplan.running.jobs import log
-from bezierplan.running.jobs.watchdog import UNDER_WAY, end_with_parent, how_ended
+from bezierplan.running.jobs.watchdog import UNDER_WAY, describe_end, end_with_parent
 
 # What the first jobs of a workflow import, which wait for it: each on its own would take as long,
 # and more time of all cores.
@@ -136,11 +136,11 @@ class Forks:
             with contextlib.suppress(ConnectionError):
                 ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
-            under_way, status, ended = _watched(ours, benchmark)
+            under_way, status, ended = _watch(ours, benchmark)
         if status is not None and not ended:
             if os.waitstatus_to_exitcode(status) in (0, 1):
                 return status == 0
-            ended = how_ended(status)
+            ended = describe_end(status)
         log.report(
             str(snakemake.log[0]),
             f"{under_way or snakemake.output[0]}: {ended or 'its process was lost'}",
@@ -164,13 +164,13 @@ class Forks:
             self.process = subprocess.Popen(
                 [self._interpreter, "-m", __name__],
                 stdin=theirs,
-                stdout=stream_for(sys.stdout),
-                stderr=stream_for(sys.stderr),
+                stdout=choose_stream(sys.stdout),
+                stderr=choose_stream(sys.stderr),
                 env=os.environ | ONE_THREAD,
             ).pid
 
 
-def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
+def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
     """What a job had under way last, how it ended as the operating system says, None if there is no
     telling, and why it was ended here, if it was: it had taken longer than it may.
     """
@@ -205,7 +205,7 @@ def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
                 return under_way, None, end
 
 
-def stream_for(stream: TextIO | None) -> int | None:
+def choose_stream(stream: TextIO | None) -> int | None:
     """What a process that is started writes to: this process's stream, or nothing if that is
     closed, for its number is then that of the next file which is opened.
     """

@@ -27,7 +27,7 @@ MOST_TOLD = 20
 
 
 @contextmanager
-def job(snakemake: Any) -> Iterator[Any]:
+def run_job(snakemake: Any) -> Iterator[Any]:
     """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for
     the output files.
 
@@ -45,11 +45,15 @@ def job(snakemake: Any) -> Iterator[Any]:
         format="%(asctime)s %(levelname)s %(message)s",
     )
     try:
-        with whole_files(snakemake.output) as output:
+        with write_whole_files(snakemake.output) as output:
             yield output
     except Exception as error:
-        logging.error("failed\n%s", account(error))
-        said = str(error) if isinstance(error, PlannerFailure) else told(full_disk(error) or error)
+        logging.error("failed\n%s", describe_error(error))
+        said = (
+            str(error)
+            if isinstance(error, PlannerFailure)
+            else told(find_full_disk(error) or error)
+        )
         lines = said.splitlines()
         if len(lines) > MOST_TOLD:
             lines[MOST_TOLD:] = [f"and {len(lines) - MOST_TOLD} more runs"]
@@ -73,7 +77,7 @@ def report(log: str, line: str) -> None:
     say(line)
 
 
-def full_disk(error: BaseException | None) -> BaseException | None:
+def find_full_disk(error: BaseException | None) -> BaseException | None:
     """The exception of a full disk that led to another one: libraries fail once more when they
     close a file that they could not write.
     """
@@ -82,7 +86,7 @@ def full_disk(error: BaseException | None) -> BaseException | None:
     return error
 
 
-def account(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """The last lines of an exception's traceback, each of limited length and without control
     characters.
     """
@@ -91,7 +95,7 @@ def account(error: BaseException) -> str:
 
 
 @contextmanager
-def whole_files(files: Any) -> Iterator[Any]:
+def write_whole_files(files: Any) -> Iterator[Any]:
     """Temporary names in another folder for a job's files, all of one folder; they get their final
     names once the block succeeds.
 

@@ -36,7 +36,7 @@ def end_with_parent() -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def cpu_time() -> float:
+def measure_cpu_time() -> float:
     """CPU seconds of this process and of its children that have ended, for a planner may leave its
     work to them.
     """
@@ -44,7 +44,7 @@ def cpu_time() -> float:
     return time.process_time() + ended.ru_utime + ended.ru_stime
 
 
-def how_ended(status: int) -> str:
+def describe_end(status: int) -> str:
     """How a process ended before its work was done, from what the operating system says of it."""
     if not os.WIFSIGNALED(status):
         return (

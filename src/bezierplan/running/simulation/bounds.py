@@ -10,7 +10,7 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells, World
 
 
-def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
+def find_least_way(world: World, problem: Problem) -> shortest_paths.Bound:
     """The shortest way through places that are free at some time: no robot's way is shorter."""
     if isinstance(world, ChangingCells):
         always = np.all([each.occupied for each in world.maps], axis=0)
@@ -23,7 +23,7 @@ def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
     return shortest_paths.shortest_path(problem._replace(workspace=stays))
 
 
-def least_arrival(world: World, problem: Problem) -> float:
+def bound_arrival(world: World, problem: Problem) -> float:
     """A time, in steps, before which no robot arrives: that of the least way at the world's pace.
 
     Where the map changes once, and no robot can be at a cell that changes before it does, the whole
@@ -39,4 +39,4 @@ def least_arrival(world: World, problem: Problem) -> float:
             return (
                 shortest_paths.shortest_path(problem._replace(workspace=second)).length / world.pace
             )
-    return least_way(world, problem).length / world.pace
+    return find_least_way(world, problem).length / world.pace

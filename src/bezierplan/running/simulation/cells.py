@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.running.simulation import ways
 from bezierplan.running.simulation.circles import ARRIVED, BLOCKED, DUE, ENDED, STOPPED
 from bezierplan.running.simulation.motion_check import Motion
@@ -29,12 +29,12 @@ def follow(
     Returns why it ends, and times (n,) with the lengths of way (n,) reached at them; between them
     the robot moves uniformly or waits.
     """
-    s, fresh, out = 0.0, True, way_out(world.workspace(time), way)
+    s, fresh, out = 0.0, True, find_way_out(world.workspace(time), way)
     times, progress = [time], [s]
     checks = policy.replan == "when_blocked"
     while True:
         free = (
-            free_length(world.workspace(time), way, max(s, out))
+            measure_free_length(world.workspace(time), way, max(s, out))
             if checks or policy.waits
             else math.inf
         )
@@ -50,7 +50,7 @@ def follow(
             if free >= way.length or not policy.waits
             else max(s, out, free - policy.brake)
         )
-        following = next_event(world, time, policy)
+        following = find_next_event(world, time, policy)
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
             time, s = arrival, limit
@@ -73,7 +73,7 @@ def follow(
     return event, np.array(times), np.array(progress)
 
 
-def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
+def find_next_event(world: ChangingCells, time: float, policy: Policy) -> float:
     """The next moment, in steps, at which the world changes, a plan is due, or time is over."""
     changes = world.moments[world.moments > time]
     due = (
@@ -84,33 +84,33 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
     return float(min(changes.min(initial=math.inf), due, world.end))
 
 
-def free_length(grid: Grid, way: Way, s: float) -> float:
+def measure_free_length(grid: Grid, way: Way, s: float) -> float:
     """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
-    collision_at = ways.first_collision(points, region(grid))
+    collision_at = ways.find_first_collision(points, build_region(grid))
     if math.isinf(collision_at):
         return math.inf
-    lengths = s + ways.lengths(points)
+    lengths = s + ways.measure_lengths(points)
     return float(np.interp(collision_at, np.arange(len(lengths)), lengths))
 
 
-def way_out(grid: Grid, way: Way) -> float:
+def find_way_out(grid: Grid, way: Way) -> float:
     """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in
     one, or does not leave them.
     """
-    cells = region(grid)
-    if not blocks(cells, tuple(way.points[0])):
+    cells = build_region(grid)
+    if not is_blocked(cells, tuple(way.points[0])):
         return 0.0
     for begin, (start, end) in zip(way.at, itertools.pairwise(way.points)):
         ends = grid.in_cells(np.array([start, end]))
-        cuts = np.unique(np.concatenate([[0.0, 1.0], *map(_crossings, *ends)]))
+        cuts = np.unique(np.concatenate([[0.0, 1.0], *map(_find_crossings, *ends)]))
         for enters, leaves in itertools.pairwise(cuts):
-            if not blocks(cells, tuple(start + (enters + leaves) / 2 * (end - start))):
+            if not is_blocked(cells, tuple(start + (enters + leaves) / 2 * (end - start))):
                 return float(begin + enters * math.dist(start, end))
     return 0.0
 
 
-def _crossings(begin: float, end: float) -> np.ndarray:
+def _find_crossings(begin: float, end: float) -> np.ndarray:
     """The shares of a way between two coordinates, in cells, at which it crosses a grid line."""
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
     return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
@@ -120,7 +120,9 @@ def _crossings(begin: float, end: float) -> np.ndarray:
 _BACK = 0.01
 
 
-def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"]) -> np.ndarray:
+def find_way_to_start(
+    motion: Motion, grid: Grid, start: Literal["position", "centre"]
+) -> np.ndarray:
     """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its
     cell; if that place is occupied, back along the motion to a free one. Only where the motion ends
     if there is none.
@@ -130,7 +132,7 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
     if begin is not None:
         return np.array([robot, begin])
     back = motion.points[::-1]
-    lengths = ways.lengths(back)
+    lengths = ways.measure_lengths(back)
     for s in np.arange(_BACK, lengths[-1], _BACK):
         robot = Way(back, lengths).place(s)
         begin = _start(grid, robot, start)
@@ -139,19 +141,19 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
     return motion.points[-1:]
 
 
-def least_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:
+def bound_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:
     """The least length, in units, of a plan from where a motion ends that goes to the centre of the
-    cell there, as `way_to_start` says, and from cell centre to cell centre to the target. Infinite
-    if there is none; nan if the target is no centre, or the map too large.
+    cell there, as `find_way_to_start` says, and from cell centre to cell centre to the target.
+    Infinite if there is none; nan if the target is no centre, or the map too large.
     """
-    approach = way_to_start(motion, grid, "centre")
+    approach = find_way_to_start(motion, grid, "centre")
     try:
         rest = shortest_paths.centre_path(
             Problem("rest", grid, tuple(approach[-1].tolist()), target)
         ).length
     except ValueError:
         return math.nan
-    return ways.way(approach).length + rest
+    return ways.build_way(approach).length + rest
 
 
 def _start(
@@ -159,7 +161,7 @@ def _start(
 ) -> np.ndarray | None:
     """Where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
-        return None if blocks(region(grid), tuple(place)) else place
+        return None if is_blocked(build_region(grid), tuple(place)) else place
     row, column = grid.cell_of(*place)
     return (
         None

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.running.simulation.motion_check import TOUCHING
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way
@@ -54,7 +54,7 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
     return _follow(way.points, way.at, step, circles, float(world.pace), world.end, rules)
 
 
-@compiled
+@compile_kernel
 def _follow(points, at, step, circles, pace, end, rules):
     """The loop of `follow`."""
     centres, velocities, walls, radii = circles
@@ -74,7 +74,7 @@ def _follow(points, at, step, circles, pace, end, rules):
         if n > 0:
             if rules.every > 0 and (step + n) % rules.every == 0:
                 return DUE, progress[: n + 1]
-            if rules.checks and comes_near(
+            if rules.checks and is_near(
                 points,
                 at,
                 s,
@@ -86,7 +86,7 @@ def _follow(points, at, step, circles, pace, end, rules):
                 pace,
             ):
                 return BLOCKED, progress[: n + 1]
-        if rules.brakes and comes_near(
+        if rules.brakes and is_near(
             points, at, s, min(s + rules.brake, total), places, drift, radii, -TOUCHING, pace
         ):
             if rules.plans:
@@ -101,7 +101,7 @@ def _follow(points, at, step, circles, pace, end, rules):
 
 
 @allocation_free
-def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
+def is_near(points, at, begin, end, centres, drift, radii, margin, pace):
     """Whether a robot that drives the part of a way between two lengths comes nearer to a circle
     than its radius plus a margin.
 

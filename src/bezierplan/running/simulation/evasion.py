@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
@@ -15,7 +15,7 @@ _DRIVES = (1, 2, 4, 8)
 _AHEAD = 20.0
 
 
-def refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -> np.ndarray:
+def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -> np.ndarray:
     """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle
     is about to come there.
 
@@ -37,7 +37,7 @@ def refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -
         [np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])]
     )
     during = seen - drift if policy.sees == "after" else seen
-    return _best(
+    return _find_best(
         robot,
         moves,
         during,
@@ -48,9 +48,9 @@ def refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -
     )
 
 
-@compiled
-def _best(robot, moves, centres, drift, radii, margin, bounds):
-    """The place (2,) at the end of the best step, as `refuge` ranks them.
+@compile_kernel
+def _find_best(robot, moves, centres, drift, radii, margin, bounds):
+    """The place (2,) at the end of the best step, as `find_refuge` ranks them.
 
     moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles
     at the beginning of the step, with their drift (k, 2) in units per step and radii (k,). bounds
@@ -68,11 +68,11 @@ def _best(robot, moves, centres, drift, radii, margin, bounds):
                 # the robot stays.
                 dx, dy = robot[0] - centres[k, 0], robot[1] - centres[k, 1]
                 vx, vy = move_x - drift[k, 0], move_y - drift[k, 1]
-                depth = min(depth, _nearest(dx, dy, vx, vy) - radii[k])
+                depth = min(depth, _measure_nearest(dx, dy, vx, vy) - radii[k])
                 reach = radii[k] + margin
-                met = _comes_at(dx, dy, vx, vy, reach)
+                met = _find_contact(dx, dy, vx, vy, reach)
                 if met >= steps:
-                    met = steps + _comes_at(
+                    met = steps + _find_contact(
                         dx + steps * vx, dy + steps * vy, -drift[k, 0], -drift[k, 1], reach
                     )
                 free = min(free, met)
@@ -86,7 +86,7 @@ def _best(robot, moves, centres, drift, radii, margin, bounds):
 
 
 @allocation_free
-def _nearest(dx, dy, ex, ey):
+def _measure_nearest(dx, dy, ex, ey):
     """Least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
     size = ex * ex + ey * ey
     share = min(max(-(dx * ex + dy * ey) / size, 0.0), 1.0) if size > 0.0 else 0.0
@@ -94,7 +94,7 @@ def _nearest(dx, dy, ex, ey):
 
 
 @allocation_free
-def _comes_at(dx, dy, vx, vy, reach):
+def _find_contact(dx, dy, vx, vy, reach):
     """When a point at (dx, dy) with a velocity comes nearer than `reach` to the origin, in steps;
     at most `_AHEAD`.
     """

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker
-from bezierplan.geometry.region import region
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.geometry.region import build_region
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.running.simulation import ways
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
@@ -32,7 +32,7 @@ class Motion(NamedTuple):
 
     def at(self, times: np.ndarray | float) -> np.ndarray:
         """Places (..., 2) at some times."""
-        return ways.places(self.points, self.times, times)
+        return ways.find_places(self.points, self.times, times)
 
 
 class Verdict(NamedTuple):
@@ -51,13 +51,13 @@ class Verdict(NamedTuple):
 def check(motion: Motion, world: World) -> Verdict:
     """The verdict on a motion."""
     if isinstance(world, ChangingCells):
-        return _among_cells(motion, world)
-    return _among_circles(motion, world)
+        return _check_among_cells(motion, world)
+    return _check_among_circles(motion, world)
 
 
-def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
+def _check_among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     walls = np.array(world.walls, dtype=float)
-    hit, clearance = _approach(
+    hit, clearance = _measure_approach(
         motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING
     )
     x_low, x_high, y_low, y_high = world.bounds
@@ -75,8 +75,8 @@ def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     )
 
 
-@compiled
-def _approach(points, times, centres, velocities, walls, radii, tolerance):
+@compile_kernel
+def _measure_approach(points, times, centres, velocities, walls, radii, tolerance):
     """Time of the first collision, infinite without, and least clearance (steps,) in each step."""
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
     clearance = np.full(max(last_step - first_step, 1), np.inf)
@@ -96,8 +96,8 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
             other = (end - times[i]) / duration if duration > 0.0 else 1.0
             for k in range(len(centres)):
                 # The robot relative to the circle, at the beginning and at the end.
-                dx, dy = _relative(points, i, one, before[k], after[k], begin - step)
-                end_x, end_y = _relative(points, i, other, before[k], after[k], end - step)
+                dx, dy = _compute_relative(points, i, one, before[k], after[k], begin - step)
+                end_x, end_y = _compute_relative(points, i, other, before[k], after[k], end - step)
                 ex, ey = end_x - dx, end_y - dy
                 size, along, apart = ex * ex + ey * ey, dx * ex + dy * ey, dx * dx + dy * dy
                 share = min(max(-along / size, 0.0), 1.0) if size > 0.0 else 0.0
@@ -119,7 +119,7 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
 
 
 @allocation_free
-def _relative(points, i, share, before, after, part):
+def _compute_relative(points, i, share, before, after, part):
     """The robot's place on leg i, relative to a circle that has made a share of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
     y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
@@ -128,9 +128,9 @@ def _relative(points, i, share, before, after, part):
     )
 
 
-def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
+def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
-    regions = [region(each) for each in world.maps]
+    regions = [build_region(each) for each in world.maps]
     clearance = np.full(max(last - first, 1), np.inf)
     collision_at = math.nan
     depth = 0.0
@@ -140,7 +140,7 @@ def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
         np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
     )
     for begin, end in itertools.pairwise(cuts):
-        points, times = between(motion, begin, end)
+        points, times = cut_motion(motion, begin, end)
         check = checker.check(
             np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)]
         )
@@ -155,7 +155,7 @@ def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     return Verdict(collision_at, clearance, depth, tolerance)
 
 
-def between(motion: Motion, begin: float, end: float) -> Motion:
+def cut_motion(motion: Motion, begin: float, end: float) -> Motion:
     """The part of a motion between two times, of at least two vertices."""
     inside = (motion.times > begin) & (motion.times < end)
     times = np.concatenate([[begin], motion.times[inside], [end]])

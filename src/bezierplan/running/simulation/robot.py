@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.planners import Plan
-from bezierplan.running.jobs.watchdog import cpu_time
+from bezierplan.running.jobs.watchdog import measure_cpu_time
 from bezierplan.running.simulation import cells, circles
 from bezierplan.running.simulation.circles import ARRIVED, STOPPED
-from bezierplan.running.simulation.evasion import refuge
+from bezierplan.running.simulation.evasion import find_refuge
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.ways import Way, drivable, way
+from bezierplan.running.simulation.ways import Way, build_drivable, build_way
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
@@ -108,8 +108,8 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
         if event == ARRIVED:
             return Ride(log.motion(), True, log.waited, plans)
         if event == STOPPED:
-            aside = _aside(world, log, time, policy)
-            time = _after_wait(world, time)
+            aside = _find_place_aside(world, log, time, policy)
+            time = _find_end_of_wait(world, time)
             if aside is None:
                 log.wait(time)
             else:
@@ -127,16 +127,16 @@ def _follow(
     return event, time + np.arange(len(reached)), reached
 
 
-def _aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
+def _find_place_aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
     """The place (2,) to which a robot that would stop steps aside; None if it stays."""
     if not policy.evades or isinstance(world, ChangingCells):
         return None
     place = log.points[-1][-1]
-    found = refuge(world, place, round(time), policy)
+    found = find_refuge(world, place, round(time), policy)
     return None if np.array_equal(found, place) else found
 
 
-def _after_wait(world: World, time: float) -> float:
+def _find_end_of_wait(world: World, time: float) -> float:
     """When a robot without a way looks again: after a step, or as soon as a cell changes."""
     changes = (
         world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
@@ -155,27 +155,29 @@ def _plan(
 ) -> tuple[DrivePlan, Way | None, Any]:
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
-    approach, evaluations, began = motion.points[-1:], 0, cpu_time()
+    approach, evaluations, began = motion.points[-1:], 0, measure_cpu_time()
 
     def made(path: Path | None, length: float, margin: float) -> DrivePlan:
-        return DrivePlan(time, path, length, margin, cpu_time() - began, evaluations)
+        return DrivePlan(time, path, length, margin, measure_cpu_time() - began, evaluations)
 
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
     if policy.start == "centre" or isinstance(world, ChangingCells):
-        approach = cells.way_to_start(motion, world.workspace(time), policy.start)
+        approach = cells.find_way_to_start(motion, world.workspace(time), policy.start)
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
-    obstacles = region(world.obstacles(looked))
+    obstacles = build_region(world.obstacles(looked))
     for margin in margins:
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
-            return made(None, 0.0, margin), way(approach), state
+            return made(None, 0.0, margin), build_way(approach), state
         if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
         plan, next_state = planner(seen, state)
         evaluations += plan.evaluations
         if plan.path is not None and plan.claimed_feasible:
-            along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
+            along = build_way(
+                np.concatenate([approach, build_drivable(plan.path, policy.spacing, obstacles)])
+            )
             return made(plan.path, along.length, margin), along, next_state
     return made(None, math.inf, math.nan), None, state
 
@@ -188,4 +190,4 @@ def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool
     if isinstance(world, MovingCircles) and isinstance(seen, Grid):
         cell = seen.cell_of(*point)
         return cell is not None and not seen.occupied[cell]
-    return not blocks(region(seen), point)
+    return not is_blocked(build_region(seen), point)

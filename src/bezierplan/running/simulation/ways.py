@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import Region, blocks, from_origin
+from bezierplan.geometry.region import Region, from_origin, is_blocked
 from bezierplan.workspaces.problem import Path
 
 # A chord this short, in units, is not halved: beside a circle of radius 2 it is as deep in it as
@@ -28,7 +28,7 @@ class Way(NamedTuple):
 
     def place(self, s: np.ndarray | float) -> np.ndarray:
         """Points (..., 2) after given lengths of way."""
-        return places(self.points, self.at, s)
+        return find_places(self.points, self.at, s)
 
     def part(self, begin: float, end: float) -> np.ndarray:
         """The polyline (m, 2) between two lengths of way, of at least two points."""
@@ -36,26 +36,26 @@ class Way(NamedTuple):
         return np.concatenate([self.place(begin)[None], inside, self.place(end)[None]])
 
 
-def places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
+def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
     """Places (..., 2), at some values, of what moves straight from point to point (n, 2).
     at: (n,) the value at each point.
     """
     return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
 
 
-def way(points: np.ndarray) -> Way:
+def build_way(points: np.ndarray) -> Way:
     """A way through points (n, 2); repeated ones are left out, but at least one is kept."""
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
-    return Way(points, lengths(points))
+    return Way(points, measure_lengths(points))
 
 
-def lengths(points: np.ndarray) -> np.ndarray:
+def measure_lengths(points: np.ndarray) -> np.ndarray:
     """Length (n,) of a polyline (n, 2) up to each of its points."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
-def polyline(path: Path, spacing: float) -> np.ndarray:
+def build_polyline(path: Path, spacing: float) -> np.ndarray:
     """The points (n, 2) of a polyline, or chords of another curve whose mean length is at most a
     spacing, in units.
     """
@@ -69,19 +69,19 @@ def polyline(path: Path, spacing: float) -> np.ndarray:
     return points
 
 
-def drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
-    """`polyline` with further points: a chord of a curve that touches an obstacle can enter it.
-    Such a chord, between two free points, is halved until no part of it does.
+def build_drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
+    """`build_polyline` with further points: a chord of a curve that touches an obstacle can enter
+    it. Such a chord, between two free points, is halved until no part of it does.
     """
-    points = polyline(path, spacing)
-    if path.curve == "polyline" or _free(points, obstacles):
+    points = build_polyline(path, spacing)
+    if path.curve == "polyline" or _is_free(points, obstacles):
         return points
-    return _halved(
+    return _halve_chords(
         path, np.linspace(0.0, len(curves.bezier_pieces(path)), len(points)), points, obstacles
     )
 
 
-def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
+def _halve_chords(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
     """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and
     more where chords enter an obstacle.
     """
@@ -92,8 +92,8 @@ def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -
         chord = np.array([begin[1], until[1]])
         if (
             math.dist(*chord) < _SHORTEST
-            or _free(chord, obstacles)
-            or any(blocks(obstacles, tuple(end)) for end in chord)
+            or _is_free(chord, obstacles)
+            or any(is_blocked(obstacles, tuple(end)) for end in chord)
         ):
             corners.append(until[1])
             continue
@@ -103,15 +103,15 @@ def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -
     return np.array(corners)
 
 
-def _free(points: np.ndarray, obstacles: Region) -> bool:
+def _is_free(points: np.ndarray, obstacles: Region) -> bool:
     """Whether a polyline (n, 2) is free."""
-    return math.isinf(first_collision(points, obstacles))
+    return math.isinf(find_first_collision(points, obstacles))
 
 
-def first_collision(points: np.ndarray, obstacles: Region) -> float:
+def find_first_collision(points: np.ndarray, obstacles: Region) -> float:
     """Where a polyline (n, 2) first enters an obstacle, by chord and share of it; infinite if
     never.
     """
     chords = np.stack([points[:-1], points[1:]], axis=1)
-    collision_at, _ = checker.first_collision(from_origin(chords, obstacles), obstacles)
+    collision_at, _ = checker.find_first_collision(from_origin(chords, obstacles), obstacles)
     return collision_at

@@ -25,7 +25,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field
 
-from bezierplan.machine.modules import kinds_in, module
+from bezierplan.machine.modules import find_kinds, load_module
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Line,
@@ -142,12 +142,12 @@ class RandomMoving(World):
 
 
 def _places() -> dict[str, str]:
-    return kinds_in("workspaces/kinds", "worlds")
+    return find_kinds("workspaces/kinds", "worlds")
 
 
 def kind_of(description: dict) -> ModuleType:
     """The file of a description's kind of workspace."""
-    return module(_places()[description["kind"]])
+    return load_module(_places()[description["kind"]])
 
 
 def modules_of(workspaces: dict[str, dict]) -> list[str]:
@@ -159,7 +159,7 @@ def modules_of(workspaces: dict[str, dict]) -> list[str]:
 @cache
 def kinds() -> dict[str, type[Workspace]]:
     """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
-    found = {name: module(place).Options for name, place in _places().items()}
+    found = {name: load_module(place).Options for name, place in _places().items()}
     return dict(
         sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].draws), each[0]))
     )

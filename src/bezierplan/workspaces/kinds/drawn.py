@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from bezierplan.machine.modules import module
+from bezierplan.machine.modules import load_module
 from bezierplan.schema.model import ARGUMENTS, Arguments, Name, Names
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -41,7 +41,7 @@ def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygo
     description: with `file`, the module of the function. Raises ValueError if the function returns
     another kind.
     """
-    function = getattr(module(description["file"]), description["function"])
+    function = getattr(load_module(description["file"]), description["function"])
     rng = generator(name, problem["layout"])
     workspace: Circles | Grid | Polygons = function(
         rng, problem, **description.get("arguments", {})

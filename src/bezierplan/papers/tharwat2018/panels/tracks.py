@@ -78,7 +78,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     parts = [workspaces.ends(problem)]
     for group in _commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
-        paths = execution.tracked(results.jobs[method], run, problem)
+        paths = execution.track_again(results.jobs[method], run, problem)
         if options.point >= len(paths[0]):
             raise ValueError(f"point: {options.point}; expected less than {len(paths[0])}")
         way = pd.DataFrame([path[options.point] for path in paths], columns=["x", "y"])
