@@ -16,7 +16,7 @@ import pandas as pd
 import yaml
 
 from bezierplan.analysis import study_code
-from bezierplan.commands import studies_of
+from bezierplan.commands import read_studies
 from bezierplan.figures.page import build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
@@ -49,8 +49,8 @@ def content() -> tuple[SimpleNamespace, Path]:
     """
     scale, folder = results()
     with contextlib.chdir(ROOT):
-        studies = studies_of()
-        whole = page_jobs.page(studies, scale)
+        studies = read_studies()
+        whole = page_jobs.build_page(studies, scale)
         study_code.functions(whole.code)  # what a study's metrics mean
         page = build.page(
             whole.page,

@@ -25,7 +25,7 @@ from docutils.utils.math import latex2mathml
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import list_planners, load_planner, read_settings
-from bezierplan.study.alternatives import meaning
+from bezierplan.study.alternatives import describe_values
 
 HERE = Path(__file__).parent
 MOST_NAMED = 4
@@ -78,8 +78,8 @@ def write(folder: Path) -> None:
         "references": {entry["key"]: entry for entry in content.citations()},
         "worth": reader.records(reader.read(content.OUTCOME / outcome.WORTH)),
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
-        "names": [(heading, [*rows]) for heading, rows in names.listed([], [*names.NAMES])],
-        "meaning": meaning,
+        "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
+        "meaning": describe_values,
         "table": table,
         "named_rows": named_rows,
         "about": content.about,

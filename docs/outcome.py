@@ -20,9 +20,9 @@ from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.analysis.outcome import headline, summary, verdict
 from bezierplan.analysis.results import of_folder
-from bezierplan.commands import studies_of
+from bezierplan.commands import read_studies
 from bezierplan.running.inputs import PAPER
-from bezierplan.study.page import settings_of
+from bezierplan.study.page import list_settings
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -57,9 +57,9 @@ def main() -> None:
     """Write docs/outcome and the README's table. Raises FileNotFoundError for results that
     `make outcome` has not made yet.
     """
-    studies = studies_of()
+    studies = read_studies()
     settings = pd.DataFrame(
-        [(key, *row) for key, each in studies.items() for row in settings_of(each)],
+        [(key, *row) for key, each in studies.items() for row in list_settings(each)],
         columns=["study", "of", "setting", "value"],
     )
     compared = {key: each.baseline_comparison for key, each in studies.items()}

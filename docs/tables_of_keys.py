@@ -14,7 +14,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import figure, layout, panels
 from bezierplan.places import TREE
 from bezierplan.running import columns
-from bezierplan.schema.model import Model, keys
+from bezierplan.schema.model import Model, list_keys
 from bezierplan.study import artefacts, claims, experiments
 from bezierplan.workspaces import kinds as workspace_kinds
 from bezierplan.workspaces.kinds import changing_cells
@@ -72,7 +72,8 @@ def described(name: str) -> str:
 def _table(model: type[Model]) -> str:
     """A row for each key."""
     rows = [
-        f"| {_name(name, field)} | {field.description} |" for name, field in keys(model).items()
+        f"| {_name(name, field)} | {field.description} |"
+        for name, field in list_keys(model).items()
     ]
     return "\n".join(["| key | means |", "| --- | --- |", *rows])
 
@@ -81,7 +82,7 @@ def _by_kind(models: dict[str, type[Model]]) -> str:
     """A row for each key, with the kinds in which it has this meaning; first those of all kinds."""
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
-        for name, field in keys(model).items():
+        for name, field in list_keys(model).items():
             if name not in _ABOVE:
                 rows.setdefault((_name(name, field), field.description), []).append(f"`{kind}`")
     shared = sorted(

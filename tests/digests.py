@@ -72,17 +72,17 @@ def scenarios(study: Study) -> Parts:
     """
     found: Parts = {}
     for name in study.experiments:
-        described = jobs.problems_job(study, name, "smoke")
+        described = jobs.build_problems_job(study, name, "smoke")
         made, moving = problems.build_all(described, study.folder)
         found["problems", name] = pd.DataFrame(
             [
-                [key, *each.start, *each.target, files.to_json(each.workspace), drawn_world]
+                [key, *each.start, *each.target, files.write_json(each.workspace), drawn_world]
                 for key, each in made.items()
                 for drawn_world in [worlds.to_json(moving[key]) if moving else ""]
             ]
         )
         for method in study.methods_of(name):
-            chunk = jobs.job(study, name, method, "smoke", 0)
+            chunk = jobs.build_chunk(study, name, method, "smoke", 0)
             first, *others = ((each, chunk.repeats[0]) for each in chunk.conditions())
             (run,) = execution.make_rows_again(chunk, [first], made, moving)
             planned = [execution.identify_run(chunk, *each) for each in others]

@@ -13,7 +13,7 @@ from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.geojson import read_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -28,7 +28,7 @@ def benchmark(name: str) -> tuple[Problem, float]:
     text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
     ends = [tuple(properties[end]) for end in ("start", "target")]
-    polygons = polygons_from_geojson(text, "m")
+    polygons = read_geojson(text, "m")
     return Problem(name, polygons, *ends), properties["shortest_path_length_m"]
 
 

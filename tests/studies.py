@@ -14,7 +14,7 @@ from bezierplan.planners import Plan, load_planner
 from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import problems_job
+from bezierplan.study.jobs import build_problems_job
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Problem
 
@@ -56,7 +56,7 @@ def drawing(key: str, name: str) -> pd.DataFrame:
 
 def built(study: Study, experiment: str, name: str) -> Problem:
     """A problem of an experiment, without the others."""
-    every = problems_job(study, experiment, "smoke")
+    every = build_problems_job(study, experiment, "smoke")
     alone = every.problems[name]
     home = alone["workspace"]
     described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})

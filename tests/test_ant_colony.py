@@ -10,10 +10,10 @@ from test_lattice_planners import colony_rules
 
 from bezierplan.planners import ant_colony
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import lattice
+from bezierplan.workspaces.lattice import build_grid_lattice
 
 GRID = Grid(np.zeros((6, 6), dtype=bool), 1.0, "unit")
-PLACES = lattice(GRID, (0.0, 0.0), (6.0, 6.0), "one")
+PLACES = build_grid_lattice(GRID, (0.0, 0.0), (6.0, 6.0), "one")
 
 
 def search(seed=0, places=PLACES, **changes):
@@ -31,7 +31,7 @@ def test_the_first_step_is_drawn_by_nearness_of_the_target():
 def test_the_target_has_a_nearness_of_its_own():
     grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
     colony = search(
-        places=lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"),
+        places=build_grid_lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"),
         ants=4000,
         iterations=1,
         target_heuristic=2.0,
@@ -45,7 +45,7 @@ def test_a_trail_draws_by_its_power(weight, direct):
     step.
     """
     grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
-    places = lattice(grid, (0.0, 0.0), (2.0, 2.0), "one")
+    places = build_grid_lattice(grid, (0.0, 0.0), (2.0, 2.0), "one")
     settings = {
         "places": places,
         "ants": 1,
@@ -67,7 +67,7 @@ def test_no_ant_visits_a_cell_twice_and_some_die():
     occupied = np.zeros((6, 6), dtype=bool)
     occupied[2, 1:4] = True
     occupied[:2, 4] = True
-    places = lattice(Grid(occupied, 1.0, "unit"), (0.0, 0.0), (6.0, 6.0), "one")
+    places = build_grid_lattice(Grid(occupied, 1.0, "unit"), (0.0, 0.0), (6.0, 6.0), "one")
     colony = search(places=places, ants=500, iterations=1)
     assert 0 < (colony.sizes == 0).sum() < 500
     for path, size in zip(colony.paths, colony.sizes, strict=True):

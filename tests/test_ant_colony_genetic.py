@@ -7,7 +7,7 @@ from test_lattice_planners import colony_rules, environment, plan
 
 from bezierplan.planners import ant_colony
 from bezierplan.planners.ant_colony_genetic import _choose_first_population
-from bezierplan.workspaces.lattice import lattice
+from bezierplan.workspaces.lattice import build_grid_lattice
 
 
 def colony_of(sizes, best):
@@ -36,7 +36,7 @@ def test_the_history_begins_with_the_ants():
     first, _ = np.random.default_rng(0).spawn(2)
     problem = environment(1)
     colony = ant_colony.search(
-        lattice(problem.workspace, problem.start, problem.target, "one"),
+        build_grid_lattice(problem.workspace, problem.start, problem.target, "one"),
         first,
         colony_rules(iterations=6),
     )

@@ -10,8 +10,8 @@ from studies import built, studies
 
 from bezierplan.geometry.region import build_region
 from bezierplan.running import execution
-from bezierplan.study.alternatives import under
-from bezierplan.study.jobs import job
+from bezierplan.study.alternatives import apply_values
+from bezierplan.study.jobs import build_chunk
 
 STUDIES = studies()
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
@@ -25,7 +25,7 @@ def found(study, experiment, method, place=-1):
     """What a few runs of a method find on one problem of an experiment, by default the last, where
     obstacles are in the way.
     """
-    described = job(study, experiment, method, "smoke", 0)
+    described = build_chunk(study, experiment, method, "smoke", 0)
     name = list(described.problems)[place]
     problem = built(study, experiment, name)
     blocked = build_region(problem.workspace)
@@ -50,7 +50,7 @@ def alternatives(study):
 
 def place_of(study, assumption, method):
     """The number of the last problem of a method, or of one on which an alternative holds."""
-    names = list(job(study, home(study, method), method, "smoke", 0).problems)
+    names = list(build_chunk(study, home(study, method), method, "smoke", 0).problems)
     if own := [number for number, name in enumerate(names) if name in assumption.problems]:
         return own[0]
     settings = study.problems[study.experiments[home(study, method)].problems[-1]].settings
@@ -85,7 +85,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
         }
         study = study.but(methods=study.methods | methods)
     assumption, value = alternatives(study)[name]
-    changed = under(study, {assumption.id: value})
+    changed = apply_values(study, {assumption.id: value})
     places = {method: place_of(study, assumption, method) for method in study.concerned(assumption)}
     assert any(
         found(changed, home(study, method), method, place)

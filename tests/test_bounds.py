@@ -22,7 +22,7 @@ from bezierplan.geometry.shortest_paths import (
 )
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.lattice import STEPS, neighbours
+from bezierplan.workspaces.lattice import STEPS, list_neighbours
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
@@ -260,7 +260,7 @@ def test_lattice_paths_are_the_shortest_of_the_whole_graph(rule, weight):
         occupied = rng.random((rows, columns)) < rng.choice([0.0, 0.2, 0.4])
         start, target = (tuple(rng.integers((rows, columns)).tolist()) for _ in range(2))
         occupied[start] = occupied[target] = False
-        reached = neighbours(occupied, rule)
+        reached = list_neighbours(occupied, rule)
         tails, steps = np.nonzero(reached >= 0)
         weights = np.where(STEPS[steps].all(axis=1), weight, 1.0)
         graph = scipy.sparse.coo_array(

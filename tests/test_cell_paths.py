@@ -15,7 +15,7 @@ from scipy import stats
 from bezierplan.geometry import curves
 from bezierplan.planners.parts import cell_paths
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import STEPS, lattice, points
+from bezierplan.workspaces.lattice import STEPS, build_grid_lattice, list_points
 from bezierplan.workspaces.problem import Path
 
 ROWS, COLUMNS = 7, 9
@@ -25,7 +25,7 @@ seeds = st.integers(0, 10_000)
 
 def places_of(grid, corners="one"):
     rows, columns = grid.occupied.shape
-    return lattice(grid, grid.centre(0), grid.centre(rows * columns - 1), corners)
+    return build_grid_lattice(grid, grid.centre(0), grid.centre(rows * columns - 1), corners)
 
 
 def marks_of(places):
@@ -116,9 +116,9 @@ def test_loops_are_cut_and_nothing_else(seed):
 def test_length_is_that_of_the_polyline_with_its_ends(seed):
     grid = random_grid(seed)
     start, target = (0.1, 0.2), (8.9, 6.3)
-    places = lattice(grid, start, target, "one")
+    places = build_grid_lattice(grid, start, target, "one")
     path = random_walk(np.random.default_rng(seed), places, 20)
-    polyline = Path("polyline", points(grid, start, grid.centre(int(path[-1])), path))
+    polyline = Path("polyline", list_points(grid, start, grid.centre(int(path[-1])), path))
     last_way = places.ends - np.hypot(0.4, 0.3)
     assert cell_paths.measure_length(path, places) == pytest.approx(
         curves.length(polyline) + last_way

@@ -39,8 +39,8 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
         experiments={"first": experiment(repeats, chunk)},
         methods={"mine": Method(planner="prm"), "other": Method(planner="straight_line")},
     )
-    assert list(jobs.chunks(own, "first", "mine", "full")) == list(range(count))
-    assert list(jobs.chunks(own, "first", "other", "full")) == [0], "draws no random numbers"
+    assert list(jobs.list_chunks(own, "first", "mine", "full")) == list(range(count))
+    assert list(jobs.list_chunks(own, "first", "other", "full")) == [0], "draws no random numbers"
 
 
 @pytest.mark.parametrize(
@@ -51,9 +51,9 @@ def test_conditions_with_fewer_runs_leave_the_later_chunks(fewer, numbers):
     """1,000 runs with each of one to ten control points and three numbers of particles."""
     own, name, method = studies()["tharwat2018"], "control_points", "cpso2_singer"
     own = own.but(experiments=own.experiments | {name: own.experiments[name].but(fewer=fewer)})
-    chunks = jobs.chunks(own, name, method, "extended")
+    chunks = jobs.list_chunks(own, name, method, "extended")
     assert len(chunks) == numbers
-    made = [jobs.job(own, name, method, "extended", number) for number in chunks]
+    made = [jobs.build_chunk(own, name, method, "extended", number) for number in chunks]
     assert len(made[0].conditions()) == 30
     for chunk in made[1:]:
         assert [each.values["particles"] for each in chunk.conditions()] == 10 * [20]
@@ -65,8 +65,8 @@ def test_conditions_with_fewer_runs_leave_the_later_chunks(fewer, numbers):
 def test_a_caption_says_where_there_are_fewer_runs():
     own = studies()["song2016"]
     runs = "runs of each method on each problem."
-    assert jobs.caption(own, "table1", "extended").endswith(f"routes: at most 250 {runs}")
-    assert jobs.caption(own, "table1", "full").endswith(f"routes: 100 {runs}")
+    assert jobs.build_caption(own, "table1", "extended").endswith(f"routes: at most 250 {runs}")
+    assert jobs.build_caption(own, "table1", "full").endswith(f"routes: 100 {runs}")
 
 
 @pytest.mark.parametrize(

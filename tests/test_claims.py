@@ -26,7 +26,7 @@ from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
@@ -245,7 +245,7 @@ def runs_of(described) -> pd.DataFrame:
     """Runs by their name, or of methods with means, or means and deviations."""
     if isinstance(described, str):
         return RUNS[described]
-    both = {name: [*one_or_list(each), 1.0][:2] for name, each in described.items()}
+    both = {name: [*convert_to_list(each), 1.0][:2] for name, each in described.items()}
     return table({name: sample(name, mean, std=std) for name, (mean, std) in both.items()})
 
 

@@ -13,9 +13,9 @@ from studies import KEYS, study
 
 from bezierplan.analysis.claims import kinds
 from bezierplan.schema import checked
-from bezierplan.schema.model import Model, keys, one_or_list, parsed
+from bezierplan.schema.model import Model, convert_to_list, list_keys, parse
 from bezierplan.study import claims as study_claims
-from bezierplan.study.alternatives import default_of
+from bezierplan.study.alternatives import find_default
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 # Of use to readers' own claims; of the papers' only those to come need them.
@@ -52,18 +52,18 @@ def names_by_column(claim):
         yield from (
             (column, value)
             for column, given in check.get("where", {}).items()
-            for value in one_or_list(given)
+            for value in convert_to_list(given)
         )
         yield from (
             (key, value)
             for key in ("metric", "experiment")
             if key in check
-            for value in one_or_list(check[key])
+            for value in convert_to_list(check[key])
         )
         if "pick" in check:
             yield "metric", check["pick"]["lowest"]
     for column, values in claim.get("variants", {}).items():
-        yield from ((column, name) for value in values for name in one_or_list(value))
+        yield from ((column, name) for value in values for name in convert_to_list(value))
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -81,10 +81,10 @@ def test_first_value_of_a_variant_is_what_the_checks_name(key):
         named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
         for column, values in claim.get("variants", {}).items():
             free = all(column != other for other, _ in named)
-            assert free or any((column, name) in named for name in one_or_list(values[0])), claim[
-                "id"
-            ]
-            assert len({len(one_or_list(value)) for value in values}) == 1, claim["id"]
+            assert free or any((column, name) in named for name in convert_to_list(values[0])), (
+                claim["id"]
+            )
+            assert len({len(convert_to_list(value)) for value in values}) == 1, claim["id"]
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -112,7 +112,7 @@ def test_assumptions_are_numbered_and_defaults_are_no_alternatives(key):
     assert sorted(set(numbers)) == list(range(1, max(numbers) + 1))
     assert numbers == sorted(numbers)
     for assumption in study(key).assumptions:
-        default = default_of(study(key), assumption)
+        default = find_default(study(key), assumption)
         in_force = default.values() if isinstance(default, dict) else [default]
         assert not set(in_force) & set(assumption.alternatives), (
             f"{assumption.id}: the default is not an alternative"
@@ -130,7 +130,7 @@ def keys_of_data(data):
 def keys_of(model):
     """Keys of a model and of those within it."""
     parts = [part for field in model.model_fields.values() for part in models_in(field.annotation)]
-    return set(keys(model)).union(*map(keys_of, parts))
+    return set(list_keys(model)).union(*map(keys_of, parts))
 
 
 def models_in(annotation):
@@ -144,7 +144,7 @@ def models_in(annotation):
     [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)],
 )
 def test_no_key_of_a_file_is_unused(name, model):
-    used = {name, "fitted", "readings", *keys(study_claims.ReadingEntry)}.union(
+    used = {name, "fitted", "readings", *list_keys(study_claims.ReadingEntry)}.union(
         *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in KEYS)
     )
     assert keys_of(model) - used == set()
@@ -154,7 +154,7 @@ def test_no_key_of_a_file_is_unused(name, model):
 def test_no_key_of_a_kind_of_test_is_unused(name):
     """A key may be used by one kind and idle in another."""
     used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
-    assert set(keys(kinds.kinds()[name])) - used <= IDLE_KEYS
+    assert set(list_keys(kinds.kinds()[name])) - used <= IDLE_KEYS
 
 
 FAULTS = {
@@ -205,6 +205,6 @@ def test_faults(name):
         "checks": [check],
     }
     with pytest.raises(checked.Fault) as fault:
-        parsed(study_claims.ClaimsFile, {"claims": [claim]}, "here")
+        parse(study_claims.ClaimsFile, {"claims": [claim]}, "here")
     assert message in str(fault.value)
     assert "\n" not in str(fault.value)

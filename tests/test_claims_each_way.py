@@ -25,7 +25,7 @@ from bezierplan.analysis.claims.kinds import kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.study import jobs
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -58,7 +58,7 @@ def published(key):
 
 @cache
 def for_claims(key):
-    return jobs.claims(study(key), "full").study
+    return jobs.build_claims(study(key), "full").study
 
 
 def artefacts(key):
@@ -123,16 +123,16 @@ def groups_of(check) -> list:
 def factors(key, claim, checks, experiment) -> dict[str, list]:
     """Columns of the runs of an experiment, and the values that the claim's checks ask for."""
     found: dict[str, list] = defaultdict(list)
-    own = [check for check in checks if experiment in one_or_list(check["experiment"])]
+    own = [check for check in checks if experiment in convert_to_list(check["experiment"])]
     for check in own:
         for column, wanted in check.get("where", {}).items():
             if column not in metrics.METRICS:
-                found[column] += one_or_list(wanted)
+                found[column] += convert_to_list(wanted)
         found[column_of(check)] += groups_of(check)
     if any(check["metric"] == "rank" for check in own):
-        part = artefacts(key)[one_or_list(claim["artefact"])[0]][0]
+        part = artefacts(key)[convert_to_list(claim["artefact"])[0]][0]
         for column, wanted in part.where.items():
-            found[column] += one_or_list(wanted)
+            found[column] += convert_to_list(wanted)
     for check in own:
         for column in [*check.get("every", []), *check.get("pool", [])]:
             if not found[column]:
@@ -221,11 +221,11 @@ def made(key, claim, truth) -> dict[str, Results]:
     """Results by experiment on which the claim's sentence is true, or its contrary."""
     checks = deciding(key, claim)
     names = list(
-        dict.fromkeys(name for check in checks for name in one_or_list(check["experiment"]))
+        dict.fromkeys(name for check in checks for name in convert_to_list(check["experiment"]))
     )
     results = {}
     for name in names:
-        own = [check for check in checks if name in one_or_list(check["experiment"])]
+        own = [check for check in checks if name in convert_to_list(check["experiment"])]
         columns = factors(key, claim, checks, name)
         repeats = range(
             1

@@ -16,7 +16,7 @@ from bezierplan.running import execution
 from bezierplan.running.guard import contract, interface
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault
-from bezierplan.study.jobs import job
+from bezierplan.study.jobs import build_chunk
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
@@ -32,7 +32,7 @@ def settings_in_force() -> dict[str, dict]:
     for study in studies().values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
-                described = job(study, experiment, method, "smoke", 0)
+                described = build_chunk(study, experiment, method, "smoke", 0)
                 condition = described.conditions()[0]
                 settings = execution.resolve_settings(described, condition)
                 few = {key: count for key, count in FEW.items() if key in settings}

@@ -15,7 +15,11 @@ from bezierplan.machine import digest as digests
 
 SOURCE = Path(__file__).parents[1] / "src"
 SYNTAX = Path(__file__).parents[1] / ".cache" / "syntax"
-ASK = "from bezierplan.machine.digest import compute_source_digest; print(compute_source_digest(*{modules!r}))"
+ASK = """
+from bezierplan.machine.digest import compute_source_digest
+
+print(compute_source_digest(*{modules!r}))
+"""
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ from bezierplan.study import jobs
 
 def artefacts(own):
     """The jobs of a study's tables of runs and figures."""
-    return {name: jobs.figure(own, "full", name) for name in own.figures} | {
-        name: jobs.table_of_runs(own, "full", name) for name in own.compared()
+    return {name: jobs.build_figure(own, "full", name) for name in own.figures} | {
+        name: jobs.build_table_of_runs(own, "full", name) for name in own.compared()
     }
 
 
@@ -41,7 +41,9 @@ def test_a_printed_number_changes_what_draws_its_table():
     drawn = {
         name
         for name in own.figures
-        if any(file.endswith("/table6.csv") for file in jobs.figure(own, "full", name).sources)
+        if any(
+            file.endswith("/table6.csv") for file in jobs.build_figure(own, "full", name).sources
+        )
     }
     assert drawn == {"figure11", "figure11_fields"}
 
@@ -55,6 +57,6 @@ def test_a_printed_number_changes_what_draws_its_table():
     ],
 )
 def test_a_map_is_drawn_without_a_planner(key, name):
-    job = jobs.figure(study(key), "full", name)
+    job = jobs.build_figure(study(key), "full", name)
     assert job.shows == {}
     assert not any("planners" in module for module in job.modules())

@@ -16,7 +16,7 @@ from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.study import jobs
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.jobs import build_chunk, build_problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {
@@ -173,10 +173,10 @@ def test_printed_lengths_over_the_bounds():
 def test_the_control_without_the_loop_evaluates_as_many_paths():
     """Claim C32 compares both."""
     own = study("elhoseny2017")
-    made, _ = problems.build_all(problems_job(own, "worth", "full"), own.folder)
+    made, _ = problems.build_all(build_problems_job(own, "worth", "full"), own.folder)
     evaluations = {}
     for method in ("mga", "mga_plain_200"):
-        described = job(own, "worth", method, "full", 0)
+        described = build_chunk(own, "worth", method, "full", 0)
         plans = [execution.run(described, Condition(name, {}), 0, made[name]) for name in made]
         evaluations[method] = sum(plan.evaluations for plan in plans)
     assert evaluations["mga_plain_200"] == pytest.approx(evaluations["mga"], rel=0.1)
@@ -193,4 +193,4 @@ def test_the_control_without_the_loop_evaluates_as_many_paths():
     ],
 )
 def test_numbers_of_maps_that_are_not_printed_are_not_compared_with_bounds(key, reconstructed):
-    assert set(jobs.audit(study(key), "smoke").reconstructed) == reconstructed
+    assert set(jobs.build_audit(study(key), "smoke").reconstructed) == reconstructed

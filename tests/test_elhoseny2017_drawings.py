@@ -89,6 +89,6 @@ def test_mutation_changes_one_digit():
 
 def test_a_figure_needs_the_methods_that_it_shows():
     own = study("elhoseny2017")
-    assert jobs.methods_of_artefact(own, "figure7") == {}
-    assert jobs.methods_of_artefact(own, "figure10")["fields100"] == ["prm", "abc_ep", "ga", "mga"]
-    assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)
+    assert jobs.list_methods(own, "figure7") == {}
+    assert jobs.list_methods(own, "figure10")["fields100"] == ["prm", "abc_ep", "ga", "mga"]
+    assert jobs.build_caption(own, "figure7", "full").startswith(own.figures["figure7"].title)

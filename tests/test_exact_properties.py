@@ -23,7 +23,7 @@ from bezierplan.geometry.shortest_paths import (
     shortest_path,
 )
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.geojson import read_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
@@ -164,9 +164,9 @@ def random_workspaces(kind, rng):
             Grid(rng.random((12, 12)) < 0.25, 1.0, "m"),
             Grid(rng.random((20, 20)) < 0.1, 0.1, "m"),
         ]
-    complex2 = polygons_from_geojson((BENCHMARK_MAPS / "complex2.geojson").read_text(), "m")
+    complex2 = read_geojson((BENCHMARK_MAPS / "complex2.geojson").read_text(), "m")
     triangles = tuple((rng.uniform(1, 19, 2) + rng.uniform(-3, 3, (3, 2)),) for _ in range(8))
-    spiral = polygons_from_geojson((BENCHMARK_MAPS / "square_spiral.geojson").read_text(), "m")
+    spiral = read_geojson((BENCHMARK_MAPS / "square_spiral.geojson").read_text(), "m")
     return [complex2, Polygons((0.0, 20.0, 0.0, 20.0), triangles, "m"), spiral]
 
 

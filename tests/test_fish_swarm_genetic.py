@@ -17,11 +17,11 @@ from bezierplan.planners.fish_swarm_genetic import (
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import lattice
+from bezierplan.workspaces.lattice import build_grid_lattice
 
 COLUMNS = 12
 GRID = Grid(np.zeros((COLUMNS, COLUMNS), dtype=bool), 1.0, "unit")
-PLACES = lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
+PLACES = build_grid_lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
 SWARM = fill_settings(Settings, study("ma2020").resolved("asfa_ga") | {"fish": 5})
 
 
@@ -79,7 +79,7 @@ def test_a_fish_does_not_follow_into_a_cell_that_it_has_visited():
 
 def released(wanted=100, seed=0, **changes):
     problem = environment(1)
-    places = lattice(problem.workspace, problem.start, problem.target, "one")
+    places = build_grid_lattice(problem.workspace, problem.start, problem.target, "one")
     swarm = SWARM._replace(fish=20, population=wanted, **changes)
     return places, *_place_first_paths(np.random.default_rng(seed), places, swarm)
 

@@ -98,7 +98,7 @@ def test_spoilt_file_of_a_study(name):
     @given(spoilt(text, WORDS))
     def told(content):
         try:
-            model.parsed(MODELS[name], checked.parse(content, f"{name}.yaml"), f"{name}.yaml")
+            model.parse(MODELS[name], checked.parse(content, f"{name}.yaml"), f"{name}.yaml")
         except Fault as fault:
             one_line(fault, f"{name}.yaml")
 

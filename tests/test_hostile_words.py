@@ -53,4 +53,4 @@ def test_without_a_word_about_cores_the_workflow_starts(monkeypatch):
     with pytest.raises(SystemExit) as found:
         main(["run", "mystudy"])
     assert found.value.code == 3
-    assert started == [run.command(["mystudy"])]
+    assert started == [run.build_command(["mystudy"])]

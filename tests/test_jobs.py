@@ -65,7 +65,7 @@ def test_caption_is_one_line_that_says_just_what_it_says():
 
 
 def _changes(own):
-    return changes(own.key, page.settings_of(own))
+    return changes(own.key, page.list_settings(own))
 
 
 def test_a_study_with_another_setting_is_marked_as_changed():
@@ -111,8 +111,8 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
     repeats = SONG.experiments[SONG.tables["table1"].experiment].repeats
     assert repeats["smoke"] != repeats["full"]
     for scale in ("smoke", "full"):
-        assert jobs.table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
-        assert f"{repeats[scale]} runs of each method" in jobs.caption(SONG, "table1", scale)
+        assert jobs.build_table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
+        assert f"{repeats[scale]} runs of each method" in jobs.build_caption(SONG, "table1", scale)
 
 
 def test_the_papers_own_are_the_numbered_ones():
@@ -172,11 +172,11 @@ def test_the_small_subset_holds_every_scenario(scenario):
     """In one experiment of the jobs of smoke."""
     key, place, varied, methods = SCENARIOS[scenario]
     own = study(key)
-    for name, made in page.shows(studies(), "smoke").items():
+    for name, made in page.find_results(studies(), "smoke").items():
         if not name.startswith(f"{key}/") or not methods <= made.keys():
             continue
         experiment = name.partition("/")[2]
-        chunk = jobs.job(own, experiment, next(iter(made)), "smoke", 0)
+        chunk = jobs.build_chunk(own, experiment, next(iter(made)), "smoke", 0)
         places = list(chunk.problems.values())
         described = own.problems_of(experiment, "smoke").values()
         if varied <= chunk.vary.keys() and all(

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.lattice import Corners, lattice, neighbours, points
+from bezierplan.workspaces.lattice import Corners, build_grid_lattice, list_neighbours, list_points
 
 RULES = tuple(Corners.__members__)
 OPEN = Grid(np.zeros((4, 5), dtype=bool), 2.0, "unit")
@@ -24,7 +24,7 @@ def random_cells(seed):
 def test_a_step_leads_to_a_free_cell_beside_so_many_occupied_ones(seed, corners):
     occupied = random_cells(seed)
     rows, columns = occupied.shape
-    reached = neighbours(occupied, corners).reshape(rows, columns, 8)
+    reached = list_neighbours(occupied, corners).reshape(rows, columns, 8)
     for row, column in product(range(rows), range(columns)):
         allowed = set()
         for up, right in product((-1, 0, 1), (-1, 0, 1)):
@@ -48,17 +48,19 @@ def test_a_step_leads_to_a_free_cell_beside_so_many_occupied_ones(seed, corners)
 
 
 def test_steps_come_in_the_order_west_east_north_south_and_the_diagonals():
-    assert neighbours(OPEN.occupied, "none")[6].tolist() == [5, 7, 11, 1, 0, 10, 2, 12]
+    assert list_neighbours(OPEN.occupied, "none")[6].tolist() == [5, 7, 11, 1, 0, 10, 2, 12]
 
 
 def test_around_an_occupied_cell_are_the_free_cells_whatever_lies_beside():
-    places = lattice(from_lines([".#.", "##.", "..."], 1.0, "unit"), (0.5, 0.5), (2.5, 2.5), "none")
+    places = build_grid_lattice(
+        from_lines([".#.", "##.", "..."], 1.0, "unit"), (0.5, 0.5), (2.5, 2.5), "none"
+    )
     assert places.neighbours[4].tolist() == [-1] * 8
     assert places.around[4].tolist() == [-1, 5, -1, 1, 0, 6, 2, 8]
 
 
 def test_ends_are_the_ways_from_start_and_to_target_in_cells():
-    places = lattice(OPEN, (0.0, 0.0), (9.0, 8.0), "one")
+    places = build_grid_lattice(OPEN, (0.0, 0.0), (9.0, 8.0), "one")
     assert (places.start, places.target) == (0, 19)
     assert places.ends == pytest.approx(math.sqrt(0.5) + 0.5)
 
@@ -70,19 +72,19 @@ def test_ends_are_the_ways_from_start_and_to_target_in_cells():
 def test_an_end_that_is_in_no_free_cell_is_named(start, target, named):
     grid = from_lines([".....", ".#..."], 2.0, "unit")
     with pytest.raises(ValueError, match=f"{named}: .*expected a point of a free cell"):
-        lattice(grid, start, target, "one")
+        build_grid_lattice(grid, start, target, "one")
 
 
 def test_points_hold_the_centres_of_start_and_target_once():
-    assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[1, 1], [3, 1]]
-    assert points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [
+    assert list_points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[1, 1], [3, 1]]
+    assert list_points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [
         [0, 0],
         [1, 1],
         [3, 1],
     ]
-    assert points(OPEN, (0.5, 1.0), (0.5, 1.0), np.array([0])).tolist() == [[0.5, 1], [0.5, 1]]
+    assert list_points(OPEN, (0.5, 1.0), (0.5, 1.0), np.array([0])).tolist() == [[0.5, 1], [0.5, 1]]
     # A path that comes by its start again keeps that.
-    assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 5, 0, 1])).tolist() == [
+    assert list_points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 5, 0, 1])).tolist() == [
         [1, 1],
         [1, 3],
         [1, 1],

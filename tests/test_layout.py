@@ -12,8 +12,7 @@ from studies import built, studies
 
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
-from bezierplan.schema.model import one_or_list
-from bezierplan.study.jobs import descriptions
+from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -185,7 +184,7 @@ def facts(own, experiment, where):
         plain = own.every_problem()[where["problem"]]
         if plain.get("route") in (where.get("route"), None) or "route" not in where:
             yield from plain.items()
-            described = descriptions(own, {"it": plain})
+            described = build_descriptions(own, {"it": plain})
             made, _ = problems.build_all(described, own.folder)
             yield from of_workspace(made["it"].workspace)
         return
@@ -194,7 +193,7 @@ def facts(own, experiment, where):
         return
 
     def selected(column, value):
-        return column not in where or value in one_or_list(where[column])
+        return column not in where or value in convert_to_list(where[column])
 
     content, layouts, homes = own.experiments[experiment], set(), set()
     for problem, plain in own.problems_of(experiment, "full").items():

@@ -47,7 +47,7 @@ def test_marks_and_words_stand_out_from_paper():
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_methods_side_by_side_look_different(name):
-    looks = jobs.looks(STUDIES[name])
+    looks = jobs.choose_looks(STUDIES[name])
     for key, figure in STUDIES[name].figures.items():
         for panel in figure.panels:
             where = getattr(panel, "where", None) or {}
@@ -62,7 +62,7 @@ def test_a_chaotic_map_has_one_colour_in_twin_figures():
     colours = []
     for name in ("figure8", "figure9"):
         methods = own.figures[name].panels[0].where["method"]
-        looks = style.lines(methods, jobs.looks(own))
+        looks = style.lines(methods, jobs.choose_looks(own))
         colours.append(
             [
                 (look["color"], own.layout[name].names[method])
@@ -76,7 +76,7 @@ def test_a_method_looks_alike_in_all_studies():
     """Methods of one name, such as baselines and rivals, and methods of another study that one
     borrows.
     """
-    looks = {name: jobs.looks(study) for name, study in STUDIES.items()}
+    looks = {name: jobs.choose_looks(study) for name, study in STUDIES.items()}
     for one, other in itertools.combinations(looks.values(), 2):
         for method in one.keys() & other.keys():
             assert one[method] == other[method], method

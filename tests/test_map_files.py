@@ -27,7 +27,7 @@ def test_a_ros_map(tmp_path):
     grid = ros_map(tmp_path)
     assert grid.occupied.tolist() == [[False] * 4, [False, True, True, False], [False] * 4]
     assert grid.bounds == (-1.0, 1.0, 2.0, 3.5)
-    again = files.from_json(files.to_json(grid))
+    again = files.read_json(files.write_json(grid))
     assert np.array_equal(again.occupied, grid.occupied)
     assert again.bounds == grid.bounds
 

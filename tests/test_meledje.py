@@ -24,15 +24,15 @@ from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import cut_motion
 from bezierplan.running.simulation.robot import drive
 from bezierplan.study import reading
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.jobs import build_chunk, build_problems_job
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import (
+    build_ground,
     centres,
-    cheapest,
-    edge_energy,
-    ground_of,
-    least_energy,
-    obstacles_on,
+    compute_edge_energy,
+    count_obstacles_on,
+    find_cheapest,
+    find_least_energy,
 )
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -54,9 +54,12 @@ def test_maps_change_as_the_paper_says():
     for environment in ("env1", "env2"):
         before, after = (workspace(f"{environment}_{state}") for state in ("initial", "modified"))
         assert before.occupied.shape == after.occupied.shape == (16, 16)
-        _, path = cheapest(ground_of(before, 1.0), 0, 255)
-        ground = ground_of(after, 1.0)
-        assert sum(obstacles_on(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
+        _, path = find_cheapest(build_ground(before, 1.0), 0, 255)
+        ground = build_ground(after, 1.0)
+        assert (
+            sum(count_obstacles_on(ground, *edge) for edge in itertools.pairwise(path.tolist()))
+            == 2
+        )
 
 
 # Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what
@@ -173,8 +176,8 @@ def climbed(path, heights):
 def test_the_cheapest_path_is_not_the_shortest():
     flat, hill = problem("plain"), problem("hill")
     start, target = 52, 64
-    _, shortest = cheapest(ground_of(flat.workspace, 1.0), start, target)
-    energy, best = cheapest(ground_of(hill.workspace, 1.0), start, target)
+    _, shortest = find_cheapest(build_ground(flat.workspace, 1.0), start, target)
+    energy, best = find_cheapest(build_ground(hill.workspace, 1.0), start, target)
     lengths = [
         np.hypot(*np.diff(centres(hill.workspace, path), axis=0).T).sum()
         for path in (shortest, best)
@@ -205,20 +208,20 @@ def test_energy_is_length_and_climb_over_friction(cell):
     heights = np.array([[0.0, 1.0, 0.5], [0.0, 3.0, 2.0]]) * cell
     home = grid.Grid(np.zeros((2, 3), dtype=bool), cell, "m", heights=heights)
     for friction in (1.0, 0.5):
-        ground = ground_of(home, friction)
-        assert edge_energy(ground, 0, 2) == 2 + 1 / friction
-        assert edge_energy(ground, 2, 0) == 2 + 0.5 / friction
-        assert edge_energy(ground, 0, 4) == pytest.approx(math.sqrt(2) + 3 / friction)
-        assert edge_energy(ground, 0, 5) == pytest.approx(math.sqrt(5) + 3 / friction)
+        ground = build_ground(home, friction)
+        assert compute_edge_energy(ground, 0, 2) == 2 + 1 / friction
+        assert compute_edge_energy(ground, 2, 0) == 2 + 0.5 / friction
+        assert compute_edge_energy(ground, 0, 4) == pytest.approx(math.sqrt(2) + 3 / friction)
+        assert compute_edge_energy(ground, 0, 5) == pytest.approx(math.sqrt(5) + 3 / friction)
 
 
 def test_heights_come_back_from_text_bit_by_bit():
     home = workspace("hill")
-    again = files.from_json(files.to_json(home))
+    again = files.read_json(files.write_json(home))
     assert again.heights.tobytes() == home.heights.tobytes()
     assert home.heights[8, 0] == 0
     assert home.heights[5, 5] == 3
-    assert files.from_json(files.to_json(workspace("plain"))).heights is None
+    assert files.read_json(files.write_json(workspace("plain"))).heights is None
 
 
 @pytest.mark.parametrize("text", ["0 0 0", "0 0 0\n0 0", "0 0 0\n0 x 0", "0 0 inf\n0 0 0"])
@@ -243,9 +246,9 @@ def test_faults_of_heights_are_told(text, tmp_path):
 
 def test_an_own_map_of_any_size_needs_configuration_alone():
     study = reading.load([YARD])["yard"]
-    made, _ = problems.build_all(problems_job(study, "tries", "full"), study.folder)
+    made, _ = problems.build_all(build_problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
-        runs, times = execution.run_chunk(made, job(study, "tries", method, "full", 0))
+        runs, times = execution.run_chunk(made, build_chunk(study, "tries", method, "full", 0))
         table = runs.to_pandas()
         assert len(table) == len(times) == 3
         assert table["optimal"].dtype == bool
@@ -266,7 +269,7 @@ def test_closed_corners_contradict_six_printed_means_on_the_invented_maps():
         ("table5", "env2_modified"),
     ):
         made = workspace(name)
-        least = least_energy(made, 1.0, True, 0, made.occupied.size - 1)
+        least = find_least_energy(made, 1.0, True, 0, made.occupied.size - 1)
         assert f"{least:.4f}" in reason
         means = PUBLISHED[table].query("metric == 'objective'")["value"]
         below += int((means < least).sum())

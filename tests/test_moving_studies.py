@@ -18,7 +18,7 @@ from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.jobs import build_chunk, build_problems_job
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
@@ -96,8 +96,8 @@ def written(folder, old="", new=""):
 
 
 def chunk(study):
-    made, found = problems.build_all(problems_job(study, "drives", "smoke"), study.folder)
-    return execution.run_chunk(made, job(study, "drives", "mine", "smoke", 0), found)
+    made, found = problems.build_all(build_problems_job(study, "drives", "smoke"), study.folder)
+    return execution.run_chunk(made, build_chunk(study, "drives", "mine", "smoke", 0), found)
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +110,9 @@ def driven(tmp_path_factory):
 @pytest.fixture(scope="module")
 def room(driven):
     """The problem of the drives, and its world."""
-    made, found = problems.build_all(problems_job(driven[0], "drives", "smoke"), driven[0].folder)
+    made, found = problems.build_all(
+        build_problems_job(driven[0], "drives", "smoke"), driven[0].folder
+    )
     return made["across"], found["across"]
 
 
@@ -160,7 +162,7 @@ def test_a_resume_without_a_state_is_told(tmp_path):
 
 def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
     study, (runs, *_) = driven
-    described = job(study, "drives", "mine", "smoke", 0)
+    described = build_chunk(study, "drives", "mine", "smoke", 0)
     run = runs.to_pylist()[1]
     ride, _ = execution.drive_again(described, run, *room)
     assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
@@ -179,7 +181,7 @@ def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
 
 def test_files_of_problems_keep_the_world(driven, tmp_path):
     study, _ = driven
-    described = problems_job(study, "drives", "smoke")
+    described = build_problems_job(study, "drives", "smoke")
     made, found = problems.build_all(described, study.folder)
     file = str(tmp_path / "drives.parquet")
     problems.write(made, described.homes, file, found)

@@ -31,11 +31,11 @@ from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.ground import (
     MOST_NEIGHBOURS,
     Neighbourhood,
-    cheapest,
-    edge_energy,
-    free_neighbours,
-    ground_of,
-    obstacles_on,
+    build_ground,
+    compute_edge_energy,
+    count_obstacles_on,
+    find_cheapest,
+    list_free_neighbours,
 )
 from bezierplan.workspaces.problem import Problem
 
@@ -113,10 +113,10 @@ def length(one, other, columns):
 @given(st.integers(0, 10_000), st.tuples(st.integers(1, 9), st.integers(1, 9)))
 def test_edges_meet_the_cells_whose_interior_they_pass(seed, shape):
     grid = Grid(np.random.default_rng(seed).random(shape) < 0.4, 1.0, "cell")
-    ground = ground_of(grid, 1.0)
+    ground = build_ground(grid, 1.0)
     for one, other in np.random.default_rng(seed).integers(0, grid.occupied.size, (40, 2)).tolist():
-        assert obstacles_on(ground, one, other) == met(one, other, grid)
-        assert edge_energy(ground, one, other) == length(one, other, shape[1])
+        assert count_obstacles_on(ground, one, other) == met(one, other, grid)
+        assert compute_edge_energy(ground, one, other) == length(one, other, shape[1])
 
 
 @pytest.mark.parametrize("mutation", OPERATORS)
@@ -124,7 +124,7 @@ def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
     where = ENVIRONMENTS["env2_modified"]
     with_table = plan(where, mutation=mutation)
     monkeypatch.setattr(ground_of_cells, "TABLE_CELLS", 0)
-    assert ground_of(where.workspace, 1.0).encounters.size == 0
+    assert build_ground(where.workspace, 1.0).encounters.size == 0
     on_demand = plan(where, mutation=mutation)
     assert on_demand.history.tobytes() == with_table.history.tobytes()
     assert on_demand.path.points.tobytes() == with_table.path.points.tobytes()
@@ -155,7 +155,7 @@ def reference_optimum(grid, start, target):
 @pytest.mark.parametrize("name", OPTIMA)
 def test_optimum_of_the_four_maps(name):
     grid = ENVIRONMENTS[name].workspace
-    energy, path = cheapest(ground_of(grid, 1.0), 0, 255)
+    energy, path = find_cheapest(build_ground(grid, 1.0), 0, 255)
     assert energy == pytest.approx(OPTIMA[name], abs=1e-6)
     assert math.fsum(
         length(a, b, 16) for a, b in itertools.pairwise(path.tolist())
@@ -168,7 +168,7 @@ def test_optimum_of_the_four_maps(name):
 @pytest.mark.parametrize("seed", range(8))
 def test_optimum_of_random_maps(seed):
     grid = random_grid(seed, shape=(6, 7), share=0.4)
-    energy, _ = cheapest(ground_of(grid, 1.0), 0, grid.occupied.size - 1)
+    energy, _ = find_cheapest(build_ground(grid, 1.0), 0, grid.occupied.size - 1)
     assert energy == pytest.approx(reference_optimum(grid, 0, grid.occupied.size - 1))
 
 
@@ -249,7 +249,7 @@ def test_first_paths_are_found_in_corridors_and_dead_ends():
 def test_rejection_keeps_feasible_paths_with_the_chances_that_they_have():
     """On a map so small that all random paths of up to two inner nodes can be listed."""
     grid = from_lines(["...", ".#.", "..."], 1.0, "cell")
-    free, ground = np.array([1, 2, 3, 5, 6, 7]), ground_of(grid, 1.0)
+    free, ground = np.array([1, 2, 3, 5, 6, 7]), build_ground(grid, 1.0)
     chances = {
         (0, *inner, 8): 1 / len(free) ** count
         for count in range(3)
@@ -284,13 +284,13 @@ def test_closed_corners_are_met():
     ):
         grid = from_lines(rows, 1.0, "cell")
         for one, other in ((0, 8), (8, 0)):
-            assert obstacles_on(ground_of(grid, 1.0), one, other) == open_
-            assert obstacles_on(ground_of(grid, 1.0, closed=True), one, other) == closed
+            assert count_obstacles_on(build_ground(grid, 1.0), one, other) == open_
+            assert count_obstacles_on(build_ground(grid, 1.0, closed=True), one, other) == closed
         # Along a row nothing changes, and what passes an interior is met by either rule.
         for one, other in itertools.product(range(9), repeat=2):
-            assert obstacles_on(ground_of(grid, 1.0, True), one, other) >= obstacles_on(
-                ground_of(grid, 1.0), one, other
-            )
+            assert count_obstacles_on(
+                build_ground(grid, 1.0, True), one, other
+            ) >= count_obstacles_on(build_ground(grid, 1.0), one, other)
 
 
 @pytest.mark.parametrize("name", OPTIMA)
@@ -331,7 +331,7 @@ def mutated(path, grid, mutation, seed=0, **changes):
         np.random.default_rng(seed),
         path,
         drawn,
-        ground_of(grid, 1.0),
+        build_ground(grid, 1.0),
         rules,
         np.empty(MOST_NEIGHBOURS, dtype=np.int64),
     )
@@ -402,9 +402,9 @@ def test_neighbours_are_the_free_cells_of_their_neighbourhood(neighbourhood):
     assert len(Neighbourhood) == len(STEPS)
     # On a map without obstacles too, so that no place for one is missing.
     for grid in (random_grid(6), random_grid(6, share=0.0), random_grid(6, shape=(1, 3))):
-        ground, found = ground_of(grid, 1.0), np.empty(MOST_NEIGHBOURS, dtype=np.int64)
+        ground, found = build_ground(grid, 1.0), np.empty(MOST_NEIGHBOURS, dtype=np.int64)
         for cell in range(grid.occupied.size):
-            count = free_neighbours(cell, ground, Neighbourhood[neighbourhood], found)
+            count = list_free_neighbours(cell, ground, Neighbourhood[neighbourhood], found)
             assert found[:count].tolist() == around(cell, grid, neighbourhood)
 
 

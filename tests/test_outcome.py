@@ -7,14 +7,14 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis.outcome import headline, summary
-from bezierplan.commands import studies_of
+from bezierplan.commands import read_studies
 
 ROOT = Path(__file__).parents[1]
 
 
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
-    shown = outcome.table(ROOT / outcome.KEPT, *outcome.named(studies_of()))
+    shown = outcome.table(ROOT / outcome.KEPT, *outcome.named(read_studies()))
     assert outcome.with_block(readme, outcome.BLOCK, shown) == readme
 
 

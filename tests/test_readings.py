@@ -15,7 +15,7 @@ STUDIES = studies()
 
 
 def chunk(study, experiment, method):
-    return jobs.job(study, experiment, method, "extended", 0)
+    return jobs.build_chunk(study, experiment, method, "extended", 0)
 
 
 # A study under other values
@@ -24,12 +24,14 @@ def chunk(study, experiment, method):
 def test_a_value_changes_its_setting_on_its_problems_and_what_goes_along():
     study = STUDIES["meledje"]
     default = chunk(study, "operators", "random")
-    second = chunk(alternatives.under(study, {"M15b": 50}), "operators", "random")
+    second = chunk(alternatives.apply_values(study, {"M15b": 50}), "operators", "random")
     assert second.settings == default.settings
     assert "generations" not in second.problems["env1_initial"]["settings"]
     changed = second.problems["env2_initial"]["settings"].items()
     assert changed >= {"generations": 50, "stall": 100, "population": 80}.items()
-    both = chunk(alternatives.under(study, {"M10": 10, "M15": 200}), "operators", "random").settings
+    both = chunk(
+        alternatives.apply_values(study, {"M10": 10, "M15": 200}), "operators", "random"
+    ).settings
     assert (both["generations"], both["stall"]) == (200, 10)
 
 
@@ -37,7 +39,7 @@ def test_a_problem_keeps_its_own_value_under_one_that_is_not_of_it():
     study = STUDIES["ma2020"]
     genetic = study.methods["ga"].but(settings={"coding": "via_cells"})
     study = study.but(methods=study.methods | {"ga": genetic})
-    made = chunk(alternatives.under(study, {"O14g": 10}), "environments", "ga")
+    made = chunk(alternatives.apply_values(study, {"O14g": 10}), "environments", "ga")
     assert made.settings["generations"] == 10
     assert made.problems["environment2"]["settings"]["generations"] == 100
 
@@ -53,7 +55,7 @@ def test_a_problem_keeps_its_own_value_under_one_that_is_not_of_it():
 )
 def test_a_study_shares_the_runs_that_its_values_do_not_change(key, values, experiment, shared):
     study = STUDIES[key]
-    other = alternatives.under(study, values)
+    other = alternatives.apply_values(study, values)
     same = {
         method
         for method in study.experiments[experiment].methods
@@ -66,7 +68,7 @@ def test_a_study_shares_the_runs_that_its_values_do_not_change(key, values, expe
 
 def test_no_best_known_path_counts_on_another_map():
     study = STUDIES["tharwat2018"]
-    other = alternatives.under(study, {"O3b": 1.35})
+    other = alternatives.apply_values(study, {"O3b": 1.35})
     assert study.problems["equal"].reference
     assert math.isnan(other.problems["equal"].reference)
     assert other.problems["public"] == study.problems["public"]
@@ -75,7 +77,7 @@ def test_no_best_known_path_counts_on_another_map():
 def test_the_runs_of_claims_are_those_that_their_checks_name():
     study = STUDIES["tharwat2018"]
     claims = [claim for claim in study.claims if claim.id in ("C21", "C27")]
-    own = alternatives.with_claims(study, claims).experiments
+    own = alternatives.keep_claims(study, claims).experiments
     assert own["maps"].problems == ["equal"]
     assert {*own["maps"].methods} < {*study.experiments["maps"].methods}
     assert own["control_points"].methods == ["cpso2_singer"]
@@ -84,12 +86,12 @@ def test_the_runs_of_claims_are_those_that_their_checks_name():
 
 def test_alternatives_have_few_runs_and_none_is_excluded():
     for key, study in STUDIES.items():
-        under = alternatives.single_alternatives(study)
+        under = alternatives.build_single_alternatives(study)
         assert next(iter(under)) == alternatives.DEFAULT
         excluded = {each.id for each in study.assumptions if each.excluded_by}
         assert not excluded & {name for own in under.values() for name in own.values}, key
         few = under[alternatives.DEFAULT]
-        for name in alternatives.experiments_of_claims(few.claims):
+        for name in alternatives.list_experiments(few.claims):
             made = chunk(few, name, few.experiments[name].methods[0])
             layouts = max(place.get("layout", 0) for place in made.problems.values()) + 1
             assert made.repeats[1] * layouts <= 100

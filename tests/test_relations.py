@@ -89,7 +89,7 @@ def test_less_room_gives_no_wider_turn_and_no_shorter_path(kind, change):
     for problem, narrower in problems(kind):
         if change == "robot":
             try:
-                grown = robot.suited(robot.grow(problem.workspace, 0.15), None)
+                grown = robot.choose_suitable(robot.grow(problem.workspace, 0.15), None)
             except ValueError:
                 continue
             narrower = problem._replace(workspace=grown)

@@ -11,15 +11,15 @@ from bezierplan.analysis.run_tables import equal
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
 from bezierplan.schema.checked import Fault
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.jobs import build_chunk, build_problems_job
 
 STUDIES = {"song2016": study("song2016")}
 
 
 def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
     study = STUDIES["song2016"]
-    described = job(study, "routes", "straight_line", "smoke", 0)
-    made, _ = problems.build_all(problems_job(study, "routes", "smoke"), study.folder)
+    described = build_chunk(study, "routes", "straight_line", "smoke", 0)
+    made, _ = problems.build_all(build_problems_job(study, "routes", "smoke"), study.folder)
     runs, _ = execution.run_chunk(made, described)
     for row in runs.to_pylist():
         assert equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)

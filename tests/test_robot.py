@@ -202,11 +202,11 @@ def test_on_random_maps_no_written_path_comes_closer_than_the_radius(tmp_path, s
 
 def test_a_grown_map_is_the_same_after_it_was_stored():
     grown = robot.grow(bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 5, 5, 10),), "m"), 0.5)
-    text = files.to_json(grown)
-    again = files.from_json(text)
-    assert files.to_json(again) == text
+    text = files.write_json(grown)
+    again = files.read_json(text)
+    assert files.write_json(again) == text
     assert again.growth.radius == 0.5
-    assert files.to_json(again.growth.original) == files.to_json(grown.growth.original)
+    assert files.write_json(again.growth.original) == files.write_json(grown.growth.original)
 
 
 def test_cells_with_many_corners_grow_by_whole_cells():

@@ -64,7 +64,7 @@ def test_a_file_behind_a_link_a_setting_and_the_package_are_checked(checked, wal
     assert len(checked) == 2
     with pytest.raises(Fault, match="triez: unknown"):
         reading.load({walks: {"triez": 3}})
-    monkeypatch.setattr(reading, "_package", lambda: ["another"])
+    monkeypatch.setattr(reading, "_describe_package", lambda: ["another"])
     reading.load([walks])
     assert len(checked) == 4
 
@@ -98,4 +98,4 @@ def test_without_a_place_to_keep_it_a_study_is_checked_each_time(checked, walks,
 )
 def test_targets_of_one_study_ask_for_no_other(targets, expected):
     folders = {STUDIES / name: {} for name in ("song2016", "ma2020")}
-    assert {folder.name for folder in reading.asked(folders, targets)} == expected
+    assert {folder.name for folder in reading.select_studies(folders, targets)} == expected

@@ -332,7 +332,7 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    specs = jobs.audit(study, "full").tables
+    specs = jobs.build_audit(study, "full").tables
     tables = published("tharwat2018")
     compared = {name: audit.printed_numbers(study.published_file(name)) for name in specs}
     rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, specs))
@@ -418,11 +418,11 @@ def test_study_is_free_of_faults(key):
 def test_the_default_of_an_assumption_is_what_the_study_uses():
     """One knob turned in experiments.yaml turns it, too; some problems may have their own."""
     study = shared("ma2020")
-    own = {each.id: alternatives.default_of(study, each) for each in study.assumptions}
+    own = {each.id: alternatives.find_default(study, each) for each in study.assumptions}
     assert own["O2"] == study.settings["control_points"]
     assert own["O14h"]["ga"] == study.methods["ga"].settings["generations"]
     assert own["O7"]["bca"] == study.settings["elitism"]
     turned = study.but(settings=study.settings | {"control_points": 5})
     assert not checks.Checks(turned).check()
     first = next(each for each in study.assumptions if each.id == "O2")
-    assert alternatives.default_of(turned, first) == 5
+    assert alternatives.find_default(turned, first) == 5

@@ -51,7 +51,7 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
         )
     )
     study = reading.load([folder])["song2016"]
-    job = jobs.job(study, "routes", "smooth", "smoke", 0)
+    job = jobs.build_chunk(study, "routes", "smooth", "smoke", 0)
     first, second = (
         execution.resolve_settings(job, Condition(problem, {})) for problem in ("0_15", "0_255")
     )
@@ -59,11 +59,12 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert second == first | {"genes": 5, "generations": 9}  # the method has samples of its own
     assert execution.resolve_settings(job, Condition("0_255", {"genes": 4}))["genes"] == 4
     assert (
-        "settings" not in jobs.job(study, "routes", "shortest_path", "smoke", 0).problems["0_255"]
+        "settings"
+        not in jobs.build_chunk(study, "routes", "shortest_path", "smoke", 0).problems["0_255"]
     )
     assert all(
         "settings" not in problem
-        for problem in jobs.problems_job(study, "routes", "smoke").problems.values()
+        for problem in jobs.build_problems_job(study, "routes", "smoke").problems.values()
     )
 
 
@@ -71,7 +72,7 @@ def test_panels_that_are_written_once_are_those_written_out():
     def panels(*given):
         figure = {"title": "A figure", "columns": 1, "panels": list(given)}
         return (
-            model.parsed(artefacts.ArtefactsFile, {"figures": {"figure1": figure}}, "here")
+            model.parse(artefacts.ArtefactsFile, {"figures": {"figure1": figure}}, "here")
             .figures["figure1"]
             .panels
         )

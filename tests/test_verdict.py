@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis.outcome import verdict
-from bezierplan.commands import studies_of
+from bezierplan.commands import read_studies
 from bezierplan.places import TREE
 
 KEPT = TREE / outcome.KEPT
@@ -26,7 +26,7 @@ def kept():
     tables = {
         name: pd.read_csv(KEPT / file) for name, file in files.items() if (KEPT / file).exists()
     }
-    audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
+    audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in read_studies()]
     return tables | {"audit": pd.concat(audits)}
 
 

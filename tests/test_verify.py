@@ -171,7 +171,7 @@ def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, t
     )
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "away").rename(tmp_path / "elsewhere/bend")
-    places = stored.places_of(results, {"studies": ["song2016"]}, ["elsewhere/bend"])
+    places = stored.read_places(results, {"studies": ["song2016"]}, ["elsewhere/bend"])
     assert places == {"bend": "elsewhere/bend"}
 
 

@@ -17,7 +17,7 @@ from bezierplan.geometry.region import build_region, is_blocked
 from bezierplan.running import problems
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files
-from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.geojson import read_geojson
 from bezierplan.workspaces.kinds import random_circles
 
 SQUARE = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]
@@ -115,7 +115,7 @@ POLYGON_FAULTS = {
 def test_polygon_fault_is_told(fault):
     text, told = POLYGON_FAULTS[fault]
     with pytest.raises(ValueError, match=told) as caught:
-        polygons_from_geojson(text, "m")
+        read_geojson(text, "m")
     assert "\n" not in str(caught.value)
 
 
@@ -129,7 +129,7 @@ def test_no_obstacle_vanishes():
         for x in (-3, 0, 3)
     ]
     border = json.loads(geojson())["features"]
-    found = polygons_from_geojson(json.dumps({"features": border + same}), "m")
+    found = read_geojson(json.dumps({"features": border + same}), "m")
     assert [ring.tolist() for (ring,) in found.obstacles] == [moved(x, 0)[:-1] for x in (-3, 0, 3)]
 
 
@@ -161,7 +161,7 @@ FOREIGN = {
 
 @pytest.mark.parametrize("form", FOREIGN)
 def test_files_of_gis_programs_are_read_as_they_are(form, caplog):
-    found = polygons_from_geojson(FOREIGN[form], "m")
+    found = read_geojson(FOREIGN[form], "m")
     assert found.bounds == (0, 10, 0, 10)
     assert found.obstacles[0][0].tolist() == SQUARE[:-1]
     assert len(found.obstacles) == 1 + (form in ("many parts", "a collection"))
@@ -171,9 +171,7 @@ def test_files_of_gis_programs_are_read_as_they_are(form, caplog):
 def test_rows_of_a_table_without_a_geometry_are_skipped_with_a_word(caplog):
     rows = [{"type": "Feature", "properties": None, "geometry": None}, {"geometry": SHAPE}]
     file = json.dumps({"features": rows, "bbox": [0, 0, 10, 10]})
-    assert [rings[0].tolist() for rings in polygons_from_geojson(file, "m").obstacles] == [
-        SQUARE[:-1]
-    ]
+    assert [rings[0].tolist() for rings in read_geojson(file, "m").obstacles] == [SQUARE[:-1]]
     assert caplog.messages == ["feature 0 (obstacle): without a geometry, and skipped"]
 
 
@@ -182,7 +180,7 @@ def test_what_lies_outside_a_border_of_any_shape_is_blocked():
     courtyard = json.loads(polygon([ell, closed((1, 1), (3, 1), (3, 3), (1, 3))], "border"))[
         "features"
     ][1]
-    found = build_region(polygons_from_geojson(json.dumps({"features": [courtyard]}), "m"))
+    found = build_region(read_geojson(json.dumps({"features": [courtyard]}), "m"))
     for point, free in {
         (9, 3): True,
         (2, 9): True,
@@ -195,7 +193,7 @@ def test_what_lies_outside_a_border_of_any_shape_is_blocked():
 
 
 def test_obstacles_are_cut_at_the_border_and_that_is_told(caplog):
-    found = polygons_from_geojson(geojson([moved(5, 0)], [moved(20, 20)], [SQUARE]), "m")
+    found = read_geojson(geojson([moved(5, 0)], [moved(20, 20)], [SQUARE]), "m")
     assert sorted(np.concatenate([ring for (ring,) in found.obstacles]).tolist()) == sorted(
         [[9, 4], [10, 4], [10, 6], [9, 6], *SQUARE[:-1]]
     )
@@ -206,7 +204,7 @@ def test_obstacles_are_cut_at_the_border_and_that_is_told(caplog):
 
 def test_start_and_target_features_are_left_out():
     place = {"type": "Point", "coordinates": [1, 1]}
-    assert polygons_from_geojson(feature({"role": "start"}, place), "m").obstacles == ()
+    assert read_geojson(feature({"role": "start"}, place), "m").obstacles == ()
 
 
 GRID_FAULTS = {
@@ -247,7 +245,7 @@ def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
     ],
 )
 def test_touching_polygons_and_holes_are_accepted(obstacles):
-    assert len(polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
+    assert len(read_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
 
 
 # So far out halving ends at units in the last place that are more than a rounding error.
@@ -278,7 +276,7 @@ def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(
     corners = (middle + np.array(shapes[form]) @ along).tolist()
     border = closed((far, 0), (far + 10, 0), (far + 10, 10), (far, 10))
     try:
-        found = polygons_from_geojson(geojson([closed(*corners)], border=border), "m")
+        found = read_geojson(geojson([closed(*corners)], border=border), "m")
     except ValueError:
         assert thickness < 1e-6 or thickness < length * 1e-3
         return
@@ -348,8 +346,8 @@ def descriptions():
     ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}",
 )
 def test_text_gives_a_workspace_back_bit_by_bit(description):
-    text = files.to_json(files.load(description, CELLS.parent))
-    assert files.to_json(files.from_json(text)) == text
+    text = files.write_json(files.load(description, CELLS.parent))
+    assert files.write_json(files.read_json(text)) == text
 
 
 RANDOM = {"bounds": [-10, 10, -10, 10], "radius": 2.0, "circles": 10, "unit": "unit"}

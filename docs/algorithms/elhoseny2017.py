@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry.cell_length import list_touched_cells, walk
-from bezierplan.workspaces.lattice import distances
+from bezierplan.workspaces.lattice import compute_distances
 
 METHOD = "elhoseny2017/mga"
 
@@ -38,7 +38,7 @@ def plan(
     walls[: grid.occupied.shape[0], : grid.occupied.shape[1]] = grid.occupied
     steps = np.floor(np.arange(21) * (side - 1) / 20 + 0.5).astype(int)
     column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
-    far = distances(walls, *np.floor(ends[0, ::-1]).astype(int))
+    far = compute_distances(walls, *np.floor(ends[0, ::-1]).astype(int))
     along = np.argsort(far[row, column], kind="stable")
     points = np.column_stack([column, row])[along] + 0.5
     at_end = (points == np.floor(ends[:, None]) + 0.5).all(axis=2).any(axis=0)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bezierplan.workspaces.ground import ground_of
+from bezierplan.workspaces.ground import build_ground
 
 METHOD = "meledje/proposed"
 
@@ -29,7 +29,7 @@ def plan(
     visible.
     """
     grid = problem.workspace
-    ground = ground_of(grid, friction)  # eq. 2: epsilon = energy[i, j]; eq. 3: beta = met[i, j]
+    ground = build_ground(grid, friction)  # eq. 2: epsilon = energy[i, j]; eq. 3: beta = met[i, j]
     energy, beta, weight = ground.energy, ground.encounters, penalty / grid.cell
     columns = grid.occupied.shape[1]
     ends = (grid.cell_of(*point) for point in (problem.start, problem.target))

@@ -15,7 +15,7 @@ import bezierplan
 from bezierplan.commands import arguments
 from bezierplan.places import EXTRA, PACKAGE, require_extra, set_kernel_target
 from bezierplan.running.jobs import watchdog
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, suggest_closest
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
 """How the command was called."""
@@ -45,7 +45,7 @@ def main(words: list[str]) -> None:
         elif name == "--version":
             print(f"bezierplan {bezierplan.__version__}")
         elif name not in COMMANDS:
-            _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
+            _refuse(f"{PROGRAM}: {name}: unknown{suggest_closest(name, COMMANDS)}")
         else:
             with require_extra():
                 command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")

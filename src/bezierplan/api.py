@@ -26,7 +26,7 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running.answer import read_path
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import check_all, check_known, closest
+from bezierplan.schema.checked import check_all, check_known, suggest_closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
@@ -348,7 +348,7 @@ def read_map(
     ValueError
         Names file, place and what is expected.
     """
-    described = map_files.described(
+    described = map_files.describe(
         File(file),
         cells=cell is not None,
         cell=cell,
@@ -714,7 +714,7 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
         and name in _read_study(key).methods
     ):
         known = [*_list_planners(), *list_planners()]
-        raise ValueError(f"method: {method}: unknown{closest(method, known)}")
+        raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
     return _read_study(key).planner(name), _read_study(key).resolved(name)
 
 
@@ -800,12 +800,12 @@ def problems(experiment: str) -> dict[str, Problem]:
     ValueError
         For an unknown one.
     """
-    from bezierplan.study.experiments import problems_job
+    from bezierplan.study.experiments import build_problems_job
 
     key, _, name = experiment.partition("/")
     check_known(key, _list_keys(), "experiment: study")
     check_known(name, _read_study(key).experiments, "experiment")
-    described = problems_job(_read_study(key), name, "full")
+    described = build_problems_job(_read_study(key), name, "full")
     return problem_files.build_all(described, _read_study(key).folder)[0]
 
 

@@ -131,10 +131,10 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
 
 def unknown_target(message: str) -> str:
     """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
-    from bezierplan.schema.checked import closest
+    from bezierplan.schema.checked import suggest_closest
 
     match = re.search(r"No rule to produce (\S+)", message)
-    return f"{match[1]}: no target{closest(match[1], KNOWN)}" if match and KNOWN else ""
+    return f"{match[1]}: no target{suggest_closest(match[1], KNOWN)}" if match and KNOWN else ""
 
 
 def in_hours(seconds: float) -> str:

@@ -98,7 +98,7 @@ Attempts = Iterator[tuple[float, Path | None]]
 
 def arena(contest: Contest) -> Arena:
     study = frame.study(contest.study)
-    described = jobs.problems_job(study, contest.experiment, "full")
+    described = jobs.build_problems_job(study, contest.experiment, "full")
     built, _ = problems.build_all(described, study.folder)
     problem = built[contest.problem]
     bound = shortest_paths.shortest_path(problem).length
@@ -108,7 +108,7 @@ def arena(contest: Contest) -> Arena:
 def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Attempts:
     """Runs of a study's method, one for each share of its own budget."""
     contest = at.contest
-    job = jobs.job(at.study, contest.experiment, method, "full", 0)
+    job = jobs.build_chunk(at.study, contest.experiment, method, "full", 0)
     condition = Condition(contest.problem, {})
     settings, planner = execution.resolve_settings(job, condition), load_planner(job.planner)
     budget = settings.get(contest.budget)

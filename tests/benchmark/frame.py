@@ -88,8 +88,8 @@ def first_runs() -> Iterator[tuple[str, Problem, Work]]:
     places.sort(key=lambda place: place[0].moves(place[1]))
     first = {place[0].planner(place[2]): place for place in reversed(places)}
     for planner, (own, experiment, method) in first.items():
-        job = jobs.job(own, experiment, method, "smoke", 0)
-        built, _ = problems.build_all(jobs.problems_job(own, experiment, "smoke"), own.folder)
+        job = jobs.build_chunk(own, experiment, method, "smoke", 0)
+        built, _ = problems.build_all(jobs.build_problems_job(own, experiment, "smoke"), own.folder)
         condition = job.conditions()[0]
         problem, settings = built[condition.problem], execution.resolve_settings(job, condition)
         plan = load_planner(planner).plan

@@ -45,9 +45,9 @@ def short() -> Works:
     for kind, problem in kinds.items():
         yield f"bound: {kind}", partial(shortest_paths.shortest_path, problem)
     studies = {study.key: study for study in frame.studies()}
-    claims = jobs.claims(studies[CLAIMS], "smoke")
+    claims = jobs.build_claims(studies[CLAIMS], "smoke")
     yield f"claims: {CLAIMS}", partial(_run, claims, CLAIMS, "claims", "checks")
-    yield "page", partial(_run, page.page(studies, "smoke", root=""), "", "page")
+    yield "page", partial(_run, page.build_page(studies, "smoke", root=""), "", "page")
 
 
 def _start(words: list[str]) -> None:

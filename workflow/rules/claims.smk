@@ -3,10 +3,10 @@
 
 rule claims:
     input:
-        unpack(results(of(jobs.claims))),
+        unpack(results(of(jobs.build_claims))),
         readings=of_readings("claims.csv"),
         checks=of_readings("claim_checks.csv"),
-        sources=sources(of(jobs.claims)),
+        sources=sources(of(jobs.build_claims)),
     output:
         claims=report(
             f"{RESULTS}/claims.csv",
@@ -29,7 +29,7 @@ rule claims:
         mem_mb=more(2000),
         runtime=more(20),
     params:
-        **params(jobs.claims),
+        **params(jobs.build_claims),
     script:
         "../scripts/job.py"
 
@@ -37,8 +37,8 @@ rule claims:
 # The claims that are judged under a reading, or drawn under each alternative.
 use rule claims as claims_of_reading with:
     input:
-        unpack(results(of(jobs.claims))),
-        sources=sources(of(jobs.claims)),
+        unpack(results(of(jobs.build_claims))),
+        sources=sources(of(jobs.build_claims)),
     output:
         claims=f"{RESULTS}/claims.csv",
         checks=f"{RESULTS}/claim_checks.csv",
@@ -48,8 +48,8 @@ use rule claims as claims_of_reading with:
 
 rule audit:
     input:
-        unpack(results(of(jobs.audit))),
-        sources=sources(of(jobs.audit)),
+        unpack(results(of(jobs.build_audit))),
+        sources=sources(of(jobs.build_audit)),
     output:
         report(
             f"{RESULTS}/audit.csv",
@@ -62,6 +62,6 @@ rule audit:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.audit),
+        **params(jobs.build_audit),
     script:
         "../scripts/job.py"

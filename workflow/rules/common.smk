@@ -43,7 +43,7 @@ def or_exit(work, *of):
         sys.exit(2)
 
 
-CONFIG = reading.config_file()
+CONFIG = reading.find_config_file()
 # In a module, the configuration is that of the workflow which uses it.
 if not config:
     or_exit(checked.read, CONFIG)
@@ -68,10 +68,10 @@ def targets():
 # what there is. Snakemake tells it nowhere else.
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 # Files of a whole scale are of the studies that are asked for, and of those that they show already.
-PAGES = {scale: reading.on_page(f"{PREFIX}results/{scale}") for scale in experiments.SCALES}
+PAGES = {scale: reading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES}
 FOLDERS = or_exit(reading.read_config, config)
 # A target of one study starts without the others.
-NAMED = reading.asked(FOLDERS, targets())
+NAMED = reading.select_studies(FOLDERS, targets())
 ASKED = or_exit(reading.load, NAMED)
 SHOWN = {key: word for listed in PAGES.values() for key, word in listed.items() if key not in ASKED}
 STUDIES = ASKED | (reading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
@@ -88,7 +88,7 @@ RESULTS = "results/{scale}/{study}"
 ROOT = f"{PREFIX}{page.RESULTS}"
 
 
-PLACES = stored.places(STUDIES)
+PLACES = stored.list_places(STUDIES)
 BELOW = f"(?:/(?:{stored.READINGS}|{stored.ALTERNATIVES})/[^/]+)"
 """Pattern of a place below that of a study."""
 
@@ -101,7 +101,7 @@ def under(key, folder):
 @cache
 def home(place, scale, experiment, method=""):
     """Where the problems of an experiment are, or the runs of a method, for the study at a place."""
-    return stored.home(PLACES, place, scale, experiment, method)
+    return stored.find_home(PLACES, place, scale, experiment, method)
 
 
 def one_of(names):
@@ -263,7 +263,7 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escaped(jobs.caption(STUDIES[wildcards.study], name, wildcards.scale))
+    return markdown.escaped(jobs.build_caption(STUDIES[wildcards.study], name, wildcards.scale))
 
 
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
@@ -310,7 +310,7 @@ def below(scale):
     """Places of studies under other values on whose claims the page rests."""
     found = []
     for key, study in OF_SCALE[scale].items():
-        figures = study.figures.keys() & {*page.shown_of(study, scale, ROOT)}
+        figures = study.figures.keys() & {*page.list_artefacts(study, scale, ROOT)}
         drawn = any(study.figures[name].claims for name in figures)
         found += under(key, stored.READINGS) if scale == jobs.JUDGED_AT else []
         found += under(key, stored.ALTERNATIVES) if drawn else []
@@ -323,7 +323,7 @@ def shown(wildcards):
     artefacts = [
         file
         for study in OF_SCALE[scale].values()
-        for name in page.shown_of(study, scale, ROOT)
+        for name in page.list_artefacts(study, scale, ROOT)
         for file in files_of(scale, study, name)
     ]
     return [
@@ -341,12 +341,12 @@ def judged(wildcards):
     """Files of the results that the page shows, and of those that the summary compares with the
     baseline.
     """
-    makes = [of(page.page, root=ROOT)]
-    makes += [of(jobs.baseline_comparison)] if summed(wildcards.scale) else []
+    makes = [of(page.build_page, root=ROOT)]
+    makes += [of(jobs.build_baseline_comparison)] if summed(wildcards.scale) else []
     parts = [results(job)(wildcards) for job in makes]
     for place in below(wildcards.scale):
         names = SimpleNamespace(scale=wildcards.scale, study=place)
-        parts.append(results(lambda names: build(jobs.claims, vars(names)))(names))
+        parts.append(results(lambda names: build(jobs.build_claims, vars(names)))(names))
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}
 
 
@@ -371,4 +371,4 @@ def verified(wildcards):
     places = {
         place: study for place, study in PLACES.items() if study.key in OF_SCALE[wildcards.scale]
     }
-    return stored.verified(places, wildcards.scale, ROOT, files)
+    return stored.build_verification(places, wildcards.scale, ROOT, files)

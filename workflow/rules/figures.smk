@@ -4,8 +4,8 @@
 
 rule figure:
     input:
-        unpack(results(of(jobs.figure))),
-        sources=sources(of(jobs.figure)),
+        unpack(results(of(jobs.build_figure))),
+        sources=sources(of(jobs.build_figure)),
         alternatives=of_alternatives,
     output:
         svg=report(
@@ -25,7 +25,7 @@ rule figure:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.figure),
+        **params(jobs.build_figure),
         caption=caption,
     script:
         "../scripts/job.py"

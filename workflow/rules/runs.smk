@@ -9,7 +9,7 @@
 
 rule problems:
     input:
-        sources=sources(of(jobs.problems)),
+        sources=sources(of(jobs.build_problems)),
     output:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:
@@ -18,7 +18,7 @@ rule problems:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.problems),
+        **params(jobs.build_problems),
     script:
         "../scripts/job.py"
 
@@ -38,7 +38,7 @@ rule bounds:
     resources:
         runtime=more(10),
     params:
-        **params(jobs.bounds),
+        **params(jobs.build_bounds),
     script:
         "../scripts/job.py"
 
@@ -61,7 +61,7 @@ rule runs:
     resources:
         runtime=more(20),
     params:
-        **params(jobs.runs),
+        **params(jobs.build_runs),
     script:
         "../scripts/job.py"
 
@@ -79,7 +79,7 @@ use rule runs as drives with:
 # Nothing reads runs that were not judged again from their rows, in a process that no planner was in.
 rule judgement:
     input:
-        unpack(results(of(jobs.judgement), "runs", "problems")),
+        unpack(results(of(jobs.build_judgement), "runs", "problems")),
     output:
         f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
     log:
@@ -90,6 +90,6 @@ rule judgement:
     resources:
         runtime=more(10),
     params:
-        **params(jobs.judgement),
+        **params(jobs.build_judgement),
     script:
         "../scripts/job.py"

@@ -3,7 +3,7 @@
 
 rule baseline_comparison:
     input:
-        unpack(results(of(jobs.baseline_comparison))),
+        unpack(results(of(jobs.build_baseline_comparison))),
     output:
         report(
             "results/{scale}/baseline_comparison.csv",
@@ -19,7 +19,7 @@ rule baseline_comparison:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.baseline_comparison),
+        **params(jobs.build_baseline_comparison),
     script:
         "../scripts/job.py"
 
@@ -27,13 +27,13 @@ rule baseline_comparison:
 # Beside a generic optimiser, which no paper has.
 use rule baseline_comparison as worth with:
     input:
-        unpack(results(of(jobs.worth))),
+        unpack(results(of(jobs.build_worth))),
     output:
         "results/{scale}/worth.csv",
     log:
         "results/{scale}/worth.log",
     params:
-        **params(jobs.worth),
+        **params(jobs.build_worth),
 
 
 rule summary:
@@ -55,7 +55,7 @@ rule summary:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.summary),
+        **params(jobs.build_summary),
     script:
         "../scripts/job.py"
 
@@ -71,7 +71,7 @@ rule verdict:
         worth=lambda wildcards: (
             [f"results/{wildcards.scale}/worth.csv"] if wildcards.scale == "extended" else []
         ),
-        sources=sources(of(jobs.verdict)),
+        sources=sources(of(jobs.build_verdict)),
     output:
         report(
             f"{RESULTS}/verdict.md",
@@ -86,7 +86,7 @@ rule verdict:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.verdict),
+        **params(jobs.build_verdict),
     script:
         "../scripts/job.py"
 
@@ -110,7 +110,7 @@ rule verified:
 
 rule page:
     input:
-        unpack(results(of(page.page, root=ROOT))),
+        unpack(results(of(page.build_page, root=ROOT))),
         shown=shown,
         summary=lambda wildcards: summed(wildcards.scale),
         # Last, for it is of all these files.
@@ -123,6 +123,6 @@ rule page:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.page, root=ROOT),
+        **params(page.build_page, root=ROOT),
     script:
         "../scripts/job.py"

@@ -4,8 +4,8 @@
 
 rule table:
     input:
-        unpack(results(of(jobs.table_of_runs))),
-        sources=sources(of(jobs.table_of_runs)),
+        unpack(results(of(jobs.build_table_of_runs))),
+        sources=sources(of(jobs.build_table_of_runs)),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -28,7 +28,7 @@ rule table:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.table_of_runs),
+        **params(jobs.build_table_of_runs),
         caption=caption,
     script:
         "../scripts/job.py"
@@ -37,8 +37,8 @@ rule table:
 # Of numbers that no paper prints, or of more than it prints.
 use rule table as unprinted_table with:
     input:
-        unpack(results(of(jobs.table_of_runs))),
-        sources=sources(of(jobs.table_of_runs)),
+        unpack(results(of(jobs.build_table_of_runs))),
+        sources=sources(of(jobs.build_table_of_runs)),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -54,7 +54,7 @@ use rule table as unprinted_table with:
 # What a paper prints, and what follows from it.
 rule listing:
     input:
-        sources=sources(of(jobs.table_without_runs)),
+        sources=sources(of(jobs.build_table_without_runs)),
     output:
         report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -69,7 +69,7 @@ rule listing:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.table_without_runs),
+        **params(jobs.build_table_without_runs),
         caption=caption,
     script:
         "../scripts/job.py"
@@ -91,6 +91,6 @@ rule latex:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.latex),
+        **params(jobs.build_latex),
     script:
         "../scripts/job.py"

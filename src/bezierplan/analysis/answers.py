@@ -15,7 +15,7 @@ from bezierplan.planners import Plan, load_planner, read_settings
 from bezierplan.running import planning
 from bezierplan.running.answer import restore_path
 from bezierplan.workspaces import robot
-from bezierplan.workspaces.grown import grown_of
+from bezierplan.workspaces.grown import find_growth
 from bezierplan.workspaces.problem import Path, Problem
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int,
 
 def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None) -> dict[str, Any]:
     """The fields of `api.Judgement` for a path, or for none. shortest: the exact shortest path."""
-    grown = grown_of(problem.workspace)
+    grown = find_growth(problem.workspace)
     fields: dict[str, Any] = {
         "problem": problem,
         "robot_radius": grown.radius if grown else 0.0,

@@ -14,7 +14,7 @@ from bezierplan.running import rows as row_files
 from bezierplan.running.chunk import Chunk, find_chunk_files
 from bezierplan.running.columns import ANSWER, TABLES
 from bezierplan.running.inputs import Files, group_by_table
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
 
@@ -215,7 +215,7 @@ def path_of(run: Mapping[str, Any] | pd.Series) -> Path | None:
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
     """The runs whose columns equal the given values, or one of the values in a list."""
-    chosen = [runs[column].isin(one_or_list(wanted)) for column, wanted in where.items()]
+    chosen = [runs[column].isin(convert_to_list(wanted)) for column, wanted in where.items()]
     return runs[np.logical_and.reduce(chosen)] if chosen else runs
 
 

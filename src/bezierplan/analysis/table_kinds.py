@@ -25,15 +25,15 @@ from bezierplan.schema.model import (
     Quantity,
     Statistic,
     Where,
-    listed,
-    matching,
-    one_or_list,
-    wrong,
+    build_error,
+    build_list_type,
+    convert_to_list,
+    match_text,
 )
 
 PublishedFile = Annotated[
     str,
-    matching(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"),
+    match_text(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"),
     Names("published"),
 ]
 WORDS = ("value", "statistic")
@@ -41,7 +41,7 @@ WORDS = ("value", "statistic")
 and which of its statistics.
 """
 # A column of the runs table, or one of these words.
-Columns = listed(Annotated[Name, Names("level")], least=0)
+Columns = build_list_type(Annotated[Name, Names("level")], least=0)
 
 
 class TableEntry(Model):
@@ -57,7 +57,7 @@ class TableValue(Model):
     metric: Metric = Field(
         description="the name of a metric (`src/bezierplan/analysis/metrics.py`)"
     )
-    statistic: listed(Statistic, single=True) = Field(
+    statistic: build_list_type(Statistic, single=True) = Field(
         description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list "
         "of names; `unstated` where the paper does not say, and ours is then the median"
     )
@@ -82,7 +82,7 @@ class TableValue(Model):
 
     @property
     def statistics(self) -> list[str]:
-        return one_or_list(self.statistic)
+        return convert_to_list(self.statistic)
 
 
 class Monotone(Model):
@@ -190,19 +190,21 @@ class Pivot(TableEntry):
     @model_validator(mode="after")
     def _check_places(self) -> "Pivot":
         if not self.index:
-            raise wrong("index: []: expected at least one column")
+            raise build_error("index: []: expected at least one column")
         for key in self.columns:
             if key in self.index:
-                raise wrong(f"columns: {key}: in index already; expected it in one of the two")
+                raise build_error(
+                    f"columns: {key}: in index already; expected it in one of the two"
+                )
         labels = [entry.label for entry in self.values]
         for number, label in enumerate(labels):
             if label in labels[:number]:
-                raise wrong(
+                raise build_error(
                     f"values: {number}: label: {label}: another entry has this label; expected "
                     "one that tells them apart"
                 )
         if self.reads and self.published is None:
-            raise wrong(
+            raise build_error(
                 "reads: the table has no published numbers, whose metrics it names; leave it out"
             )
         return self

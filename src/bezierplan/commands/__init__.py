@@ -13,16 +13,16 @@ from typing import Any
 from bezierplan.schema import checked
 
 
-def cores() -> int:
+def count_cores() -> int:
     """How many cores this process may use, all of this machine where that is not known."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def config_of() -> dict[str, Any]:
+def read_config() -> dict[str, Any]:
     """The configuration in config/config.yaml: of the working folder, or of the project."""
     from bezierplan.study import reading
 
-    return checked.read(reading.config_file())
+    return checked.read(reading.find_config_file())
 
 
 def is_study(word: str) -> bool:
@@ -30,14 +30,14 @@ def is_study(word: str) -> bool:
     return Path(word, "experiments.yaml").is_file()
 
 
-def study_named(word: str) -> str:
+def find_study_path(word: str) -> str:
     """The path of a study's folder; any other word as it is."""
     return str(Path(word).resolve()) if is_study(word) else word
 
 
-def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
-    """The studies of some names or folders, or of the configuration (`config_of`). Raises Fault."""
+def read_studies(names: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the studies of some names or folders, or of the configuration. Raises Fault."""
     from bezierplan.study import reading
 
-    config = {"studies": [*map(study_named, names)]} if names else config_of()
+    config = {"studies": [*map(find_study_path, names)]} if names else read_config()
     return reading.load(reading.read_config(config))

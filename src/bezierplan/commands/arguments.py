@@ -33,7 +33,7 @@ def call(
 
     Raises ValueError as these do; if its message begins with the name of an option, with dashes.
     """
-    sections = _sections(main)
+    sections = _split_sections(main)
     parser = Parser(
         prog=program,
         description=sections[""],
@@ -43,7 +43,7 @@ def call(
     )
     options: dict[str, str] = {}
     for function in (main, *functions):
-        for parameter, text in parameters(function):
+        for parameter, text in read_parameters(function):
             rest = parameter.kind is parameter.VAR_KEYWORD
             word = not rest and parameter.default is parameter.empty
             # Words of a function that is passed on, and what is passed on, are no arguments.
@@ -64,15 +64,15 @@ def call(
         raise
 
 
-def _sections(function: Callable[..., Any]) -> dict[str, str]:
+def _split_sections(function: Callable[..., Any]) -> dict[str, str]:
     """The sections of a docstring by their headings, the first without one."""
     parts = re.split(r"\n\n(\w+)\n-+\n", f"{inspect.getdoc(function)}")
     return dict(zip(["", *parts[1::2]], parts[::2]))
 
 
-def parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str]]:
+def read_parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str]]:
     """The parameters of a function, with the text of its docstring."""
-    section = _sections(function).get("Parameters", "")
+    section = _split_sections(function).get("Parameters", "")
     texts = dict(re.findall(r"^\**(\w+).*\n((?: {4}.*\n?)+)", section, re.MULTILINE))
     for name, parameter in inspect.signature(function, eval_str=True).parameters.items():
         yield parameter, " ".join(texts.get(name, "").split())
@@ -107,7 +107,7 @@ def _place(text: str) -> Place:
     return x, y
 
 
-def _settings(text: str) -> Settings:
+def _read_settings(text: str) -> Settings:
     settings = checked.parse(text, "--settings")
     if not isinstance(settings, dict):
         raise ArgumentTypeError(f"{text}: expected '{{name: value, ...}}'")
@@ -116,7 +116,7 @@ def _settings(text: str) -> Settings:
 
 READS: dict[Any, tuple[Callable[[str], Any], str]] = {
     Place: (_place, "X,Y"),
-    Settings: (_settings, "'{NAME: VALUE, ...}'"),
+    Settings: (_read_settings, "'{NAME: VALUE, ...}'"),
     bool: (bool, ""),
     int: (int, "N"),
     float: (float, "NUMBER"),

@@ -7,7 +7,7 @@ from typing import Any
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import kinds
-from bezierplan.commands import is_study, studies_of, study_named
+from bezierplan.commands import find_study_path, is_study, read_studies
 from bezierplan.figures import panels
 from bezierplan.figures.page import in_printed_order
 from bezierplan.planners import list_planners, load_planner, read_settings
@@ -35,15 +35,17 @@ def main(*words: str) -> None:
     list settings tharwat2018
     list metrics mystudy
     """
-    loaded = studies_of([word for word in words if is_study(word)])
-    names = [Path(study_named(word)).name for word in words]
+    loaded = read_studies([word for word in words if is_study(word)])
+    names = [Path(find_study_path(word)).name for word in words]
     for name in names:
         check_known(name, (*KINDS, *NAMES, *loaded), "list")
     if "metrics" in names:
         _load_metrics(loaded.values())
     shown = [study for key, study in loaded.items() if key in names] or [*loaded.values()]
     asked = [name for name in names if name not in loaded]
-    for heading, rows in listed(shown, asked or [kind for kind in KINDS if kind != "settings"]):
+    for heading, rows in list_things(
+        shown, asked or [kind for kind in KINDS if kind != "settings"]
+    ):
         print(heading)
         for name, text in rows:
             print(f"  {name:28} {text}")
@@ -59,7 +61,7 @@ def _load_metrics(studies: Iterable[Study]) -> None:
             metrics.add_columns(getattr(load_planner(planner), "extra", ()))
 
 
-def listed(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str, Rows]]:
+def list_things(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str, Rows]]:
     """Headings, each with names and a line on each: of kinds of `NAMES`, then of each study those
     of `KINDS`.
     """
@@ -70,45 +72,45 @@ def listed(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str
                 yield f"{study.key}, {kind}: {study.title}", KINDS[kind](study)
 
 
-def _titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
+def _list_titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
     return ((f"{study.key}_{name}", artefacts[name].title) for name in in_printed_order(artefacts))
 
 
-def _methods(study: Study) -> Rows:
+def _list_methods(study: Study) -> Rows:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
         own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
-        what = filter(None, [_sentence(load_planner(planner)).rstrip("."), own])
+        what = filter(None, [_read_sentence(load_planner(planner)).rstrip("."), own])
         yield name, f"{planner}{variant}: {'; '.join(what)}"
 
 
-def _settings(study: Study) -> Rows:
+def _list_settings(study: Study) -> Rows:
     for planner in dict.fromkeys(map(study.planner, study.methods)):
         for name, declared in read_settings(load_planner(planner)).items():
             yield f"{planner}: {name}", f"{declared}; {declared.meaning}"
 
 
-def _sentence(thing: Any) -> str:
+def _read_sentence(thing: Any) -> str:
     """The first paragraph about a module, or about that of a model, on one line."""
     module = inspect.getmodule(thing) if isinstance(thing, type) else thing
     return " ".join((inspect.getdoc(module) or "").partition("\n\n")[0].split())
 
 
-def _sentences(things: Mapping[str, Any]) -> Rows:
-    return ((name, _sentence(each)) for name, each in things.items())
+def _read_sentences(things: Mapping[str, Any]) -> Rows:
+    return ((name, _read_sentence(each)) for name, each in things.items())
 
 
 KINDS: dict[str, Callable[[Study], Rows]] = {
-    "tables": lambda study: _titles(study, study.tables),
-    "figures": lambda study: _titles(study, study.figures),
-    "methods": _methods,
+    "tables": lambda study: _list_titles(study, study.tables),
+    "figures": lambda study: _list_titles(study, study.figures),
+    "methods": _list_methods,
     "experiments": lambda study: (
         (name, f"{len(each.problems)} problems, {len(each.methods)} methods, {each.repeats}")
         for name, each in study.experiments.items()
     ),
     "claims": lambda study: ((claim.id, claim.statement) for claim in study.claims),
-    "settings": _settings,
+    "settings": _list_settings,
 }
 """What a study has, by kind."""
 
@@ -116,9 +118,9 @@ NAMES: dict[str, Callable[[], Rows]] = {
     "metrics": lambda: (
         (name, f"{each.meaning} ({each.unit})") for name, each in metrics.METRICS.items()
     ),
-    "panels": lambda: _sentences(panels.kinds()),
-    "tests": lambda: _sentences(kinds.kinds()),
-    "worlds": lambda: _sentences(workspace_kinds.kinds()),
-    "planners": lambda: _sentences({name: load_planner(name) for name in list_planners()}),
+    "panels": lambda: _read_sentences(panels.kinds()),
+    "tests": lambda: _read_sentences(kinds.kinds()),
+    "worlds": lambda: _read_sentences(workspace_kinds.kinds()),
+    "planners": lambda: _read_sentences({name: load_planner(name) for name in list_planners()}),
 }
 """What the files of a study can name, by kind."""

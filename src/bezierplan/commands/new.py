@@ -13,7 +13,7 @@ from bezierplan.places import PACKAGE, TREE
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.workspaces import files
-from bezierplan.workspaces.map_files import described
+from bezierplan.workspaces.map_files import describe
 
 TEMPLATE = PACKAGE / "template"
 EXAMPLE = TREE / "examples" / "bailey2015"
@@ -55,7 +55,7 @@ def main(
     if len({from_ is None, start is None, target is None}) > 1:
         raise Fault("expected --from, --start and --target together: a map of your own")
     if from_:
-        workspace = described(from_, cells=True)
+        workspace = describe(from_, cells=True)
         files.load(workspace, from_.parent)
     shutil.copytree(
         EXAMPLE if example and not from_ else TEMPLATE,
@@ -63,14 +63,14 @@ def main(
         ignore=shutil.ignore_patterns("__pycache__"),
     )
     _replace(folder / "README.md", "mystudy", folder.name)
-    _replace(folder / "README.md", "^bezierplan", _called())
+    _replace(folder / "README.md", "^bezierplan", _find_call())
     if from_:
         ends = {"start": list(start), "target": list(target)}
         _put(folder, files.sources(workspace, from_.parent), workspace, ends)
-    print(f"{folder}: a study; next: {_called()} run {shlex.quote(str(folder))}")
+    print(f"{folder}: a study; next: {_find_call()} run {shlex.quote(str(folder))}")
 
 
-def _called() -> str:
+def _find_call() -> str:
     """Return the words by which a shell calls this program once more."""
     first = sys.argv[0]
     if Path(first).name == "bezierplan":
@@ -86,8 +86,10 @@ def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, lis
     shutil.rmtree(folder / "published")
     _replace(folder / "artefacts.yaml", "    published: lengths.csv\n", "")
     experiments = folder / "experiments.yaml"
-    _replace(experiments, "^  room:.*\n", f"  room: {_flow(workspace)}")
-    _replace(experiments, "^  across:.*\n", f"  across: {_flow({'workspace': 'room'} | ends)}")
+    _replace(experiments, "^  room:.*\n", f"  room: {_write_flow(workspace)}")
+    _replace(
+        experiments, "^  across:.*\n", f"  across: {_write_flow({'workspace': 'room'} | ends)}"
+    )
 
 
 def _replace(file: Path, old: str, new: str) -> None:
@@ -96,5 +98,5 @@ def _replace(file: Path, old: str, new: str) -> None:
     file.write_text(text, encoding="utf-8")
 
 
-def _flow(mapping: dict) -> str:
+def _write_flow(mapping: dict) -> str:
     return yaml.safe_dump(mapping, default_flow_style=True, sort_keys=False, width=1000)

@@ -69,7 +69,7 @@ def main(
         _check_out(out, map)
     if not map.suffix and not map.exists():
         map = api.example_map(str(map))
-    names = {parameter.name for parameter, *_ in arguments.parameters(api.read_map)}
+    names = {parameter.name for parameter, *_ in arguments.read_parameters(api.read_map)}
     room = api.read_map(map, **{name: options.pop(name) for name in names & options.keys()})
     problem = api.Problem("", room, start, target)
     settings = options.pop("settings", {})

@@ -8,7 +8,7 @@ from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.run_tables import equal, stored_runs
-from bezierplan.commands import studies_of
+from bezierplan.commands import read_studies
 from bezierplan.figures import sheet
 from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.study.replays import replay
@@ -33,7 +33,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     replay song2016/routes/15_240/smooth/2
     replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0
     """
-    loaded = studies_of(studies)
+    loaded = read_studies(studies)
     reproduced = replay(run, loaded)
     row = reproduced.runs.iloc[0]
     same = {file: equal(row, stored) for file, stored in stored_runs(run, Path("results")).items()}

@@ -10,13 +10,13 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
-from bezierplan.commands import is_study, study_named
+from bezierplan.commands import find_study_path, is_study
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
 from bezierplan.running.jobs.watchdog import end_with_parent
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 
 
 def main(*words: str) -> None:
@@ -42,7 +42,7 @@ def main(*words: str) -> None:
     importlib.import_module("snakemake")  # or else it is told what to install
     out, err = map(forks.choose_stream, (sys.stdout, sys.stderr))
     workflow = subprocess.Popen(
-        command(words), stdout=out, stderr=err, process_group=0, preexec_fn=end_with_parent
+        build_command(words), stdout=out, stderr=err, process_group=0, preexec_fn=end_with_parent
     )
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
@@ -54,7 +54,7 @@ def main(*words: str) -> None:
         raise
 
 
-def command(words: Sequence[str]) -> list[str]:
+def build_command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
     snakemake = [sys.executable, "-m", "snakemake"]
     if not any(word.startswith("--workflow-profile") for word in words):
@@ -62,9 +62,9 @@ def command(words: Sequence[str]) -> list[str]:
         profile = checked.read(TREE / "profiles" / "default" / "profile.yaml")
         snakemake += ["--workflow-profile", "none"]
         for name, value in profile.items():
-            snakemake += [f"--{name}", *([] if value is True else one_or_list(value))]
+            snakemake += [f"--{name}", *([] if value is True else convert_to_list(value))]
     # A word that stands there again is a target: a folder may have the name of one.
-    folders = {word: study_named(word) for word in words if is_study(word)}
+    folders = {word: find_study_path(word) for word in words if is_study(word)}
     others = [*words]
     for word in folders:
         others.remove(word)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
-from bezierplan.commands import config_of, cores, study_named
+from bezierplan.commands import count_cores, find_study_path, read_config
 from bezierplan.machine import opened
 from bezierplan.places import shorten_path
 from bezierplan.running import recheck
@@ -22,7 +22,7 @@ def main(
     folder: Path,
     *,
     studies: Sequence[str] = (),
-    cores: int = cores(),
+    cores: int = count_cores(),
     all_: bool = False,
 ) -> None:
     """Print a line for each file that differs from what is made again, what was checked, and the
@@ -50,13 +50,15 @@ def main(
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
-    places = stored.places_of(folder, config_of(), map(study_named, studies))
-    config = proof.narrowed(config_of(), [*places.values()])
-    at = stored.places(reading.load(reading.read_config(config)))
+    places = stored.read_places(folder, read_config(), map(find_study_path, studies))
+    config = proof.narrowed(read_config(), [*places.values()])
+    at = stored.list_places(reading.load(reading.read_config(config)))
     listed = proof.listed(folder)
-    made = stored.jobs_of(at, folder, listed.digests)
-    changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
-    tasks = _tasks(at, made, changes, folder)
+    made = stored.find_jobs(at, folder, listed.digests)
+    changes = {
+        file: _find_changes(made.get(file), listed.accounts[file]) for file in listed.accounts
+    }
+    tasks = _list_tasks(at, made, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
     faults = [*proof.unlisted(folder, listed), *verdict.faults]
     again = recheck.run_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
@@ -66,7 +68,7 @@ def main(
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         wrong.setdefault(fault.file, fault)
-    left, versions = stored.strangers(folder, made), recheck.read_versions()
+    left, versions = stored.find_strangers(folder, made), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
     names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
@@ -92,13 +94,13 @@ def main(
         sys.exit(1)
 
 
-def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
+def _find_changes(job: Job | None, account: Mapping[str, str]) -> set[str]:
     """Return what of the account of a listed file is not that of its job."""
     now = job.account | opened.hash_contents(account) if job else {}
     return {name for name in account.keys() | now if account.get(name) != now.get(name)}
 
 
-def _tasks(
+def _list_tasks(
     at: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
 ) -> list[recheck.StoredRuns]:
     """Return the runs of each method in an experiment of which there are some. at: the study at
@@ -109,7 +111,7 @@ def _tasks(
         file = folder / name
         if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
             place, experiment = name.partition("/runs/")[0], job.chunk.experiment
-            home = stored.home(at, place, folder.resolve().name, experiment)
+            home = stored.find_home(at, place, folder.resolve().name, experiment)
             changed = shorten_path(at[place].folder / "experiments.yaml")
             task = recheck.StoredRuns(
                 str(folder / home / "problems" / f"{experiment}.parquet"),

@@ -5,9 +5,17 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
-from bezierplan.schema.model import Line, Model, expected, one_of, one_or_list, shown, wrong
+from bezierplan.schema.model import (
+    Line,
+    Model,
+    build_choice_type,
+    build_error,
+    build_expectation,
+    convert_to_list,
+    show_value,
+)
 
-_PANELS = TypeAdapter(dict[str, Annotated[Panel, one_of("kind", kinds())]])
+_PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", kinds())]])
 _PARTS = TypeAdapter(
     Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
 )
@@ -31,14 +39,14 @@ def _expanded(place: int, entry: Any) -> dict[str, Any]:
     try:
         parts = _PARTS.validate_python(entry["each"])
     except ValidationError:
-        raise wrong(f"each: {shown(entry['each'])}: expected {EACH}") from None
+        raise build_error(f"each: {show_value(entry['each'])}: expected {EACH}") from None
     return {f"{place}: each: {n}": _joined(part, shared) for n, part in enumerate(parts)}
 
 
 def _panels(entries: Any) -> list[Panel]:
     """The panels of a figure, each with its place in the list of the file."""
     if not isinstance(entries, list) or not entries:
-        raise expected("a list of panels")
+        raise build_expectation("a list of panels")
     placed: dict[str, Any] = {}
     for number, entry in enumerate(entries):
         placed |= _expanded(number, entry)
@@ -46,7 +54,7 @@ def _panels(entries: Any) -> list[Panel]:
     for place, panel in panels.items():
         panel._place = place
     if len(panels) > MOST_PANELS:
-        raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")
+        raise build_error(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")
     return [*panels.values()]
 
 
@@ -98,6 +106,6 @@ class Figure(Model):
         """Whether it draws the numbers of a published table."""
         return any(
             table
-            in (getattr(panel, "printed", None), *one_or_list(getattr(panel, "published", [])))
+            in (getattr(panel, "printed", None), *convert_to_list(getattr(panel, "published", [])))
             for panel in self.panels
         )

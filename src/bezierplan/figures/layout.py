@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or
+from bezierplan.schema.model import Line, Model, Name, Setting, build_list_type, build_mapping_type
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Axis = Literal["x", "y", "z"]
-Words = Annotated[dict[Any, str] | list[str], mapping_or(dict[Setting, Line], listed(Line))]
+Words = Annotated[
+    dict[Any, str] | list[str], build_mapping_type(dict[Setting, Line], build_list_type(Line))
+]
 
 
 class Layout(Model):
@@ -27,10 +29,10 @@ class Layout(Model):
         description="what a figure shows, in the order of print: name, value or entry of the "
         "legend → its printed name; or a list of these",
     )
-    axes: dict[Axis, listed(Line)] = Field(
+    axes: dict[Axis, build_list_type(Line)] = Field(
         {}, description="x, y or z → what the axis shows, in all panels or in each"
     )
-    units: dict[Axis, listed(Line)] = Field({}, description="likewise its unit")
+    units: dict[Axis, build_list_type(Line)] = Field({}, description="likewise its unit")
     looks: dict[Line, dict[Name, Setting]] = Field(
         {},
         description="entry of the legend → properties of matplotlib that print gives it, such as "

@@ -14,7 +14,7 @@ import numpy as np
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import Bounds
-from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
+from bezierplan.workspaces.polygons import Polygons, cross, list_rings, normalise
 from bezierplan.workspaces.problem import Workspace
 
 if TYPE_CHECKING:
@@ -270,7 +270,7 @@ def _build_circle_region(circles: Circles) -> CircleRegion:
 def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
     from bezierplan.geometry.bins import sort_into_bins
 
-    cornered = [_list_corners(ring) for ring in rings(polygons.free())]
+    cornered = [_list_corners(ring) for ring in list_rings(polygons.free())]
     begin = np.concatenate([np.empty((0, 2)), *cornered])
     following = np.empty(len(begin), dtype=np.int64)
     first = 0
@@ -279,7 +279,7 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
         first += len(ring)
     preceding = np.argsort(following)
     end = begin[following]
-    direction = unit(end - begin)
+    direction = normalise(end - begin)
     normals = np.column_stack([-direction[:, 1], direction[:, 0]])
     convex = cross(direction, direction[following]) < 0
     edges = np.hstack([begin, end])
@@ -289,6 +289,6 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
 def _list_corners(ring: np.ndarray) -> np.ndarray:
     """A ring (n, 2) without repeated and collinear vertices."""
     ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
-    arriving = unit(ring - np.roll(ring, 1, axis=0))
-    leaving = unit(np.roll(ring, -1, axis=0) - ring)
+    arriving = normalise(ring - np.roll(ring, 1, axis=0))
+    leaving = normalise(np.roll(ring, -1, axis=0) - ring)
     return ring[np.abs(cross(arriving, leaving)) > COLLINEAR]

@@ -29,12 +29,12 @@ from bezierplan.workspaces.ground import (
     MOST_NEIGHBOURS,
     Ground,
     Neighbourhood,
+    build_ground,
     centres,
-    edge_energy,
-    ground_of,
-    least_energy,
-    obstacles_along,
-    obstacles_on,
+    compute_edge_energy,
+    count_obstacles_along,
+    count_obstacles_on,
+    find_least_energy,
 )
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -199,14 +199,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     grid = problem.workspace
     friction, closed = settings.friction, settings.corners == Corners.closed
-    ground = ground_of(grid, friction, closed)
+    ground = build_ground(grid, friction, closed)
     start, target = (_find_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
-    optimum = least_energy(grid, friction, closed, start, target)
+    optimum = find_least_energy(grid, friction, closed, start, target)
     starts, moves = rng.spawn(2)
-    if obstacles_on(ground, start, target) == 0:
+    if count_obstacles_on(ground, start, target) == 0:
         # No search needed: a walk sees its target immediately, and paths without inner nodes cannot
         # change.
-        energy = edge_energy(ground, start, target)
+        energy = compute_edge_energy(ground, start, target)
         result = _Outcome(
             np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0
         )
@@ -366,10 +366,10 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             for _ in range(lengths[i] - 2 if rules.mutation_for == MutationFor.node else 1):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
-                    was_feasible = obstacles_along(path, ground) == 0
+                    was_feasible = count_obstacles_along(path, ground) == 0
                     evaluations += mutate(moves, path, alleles, ground, rules, neighbours)
                     feasible += was_feasible
-                    losses += was_feasible and obstacles_along(path, ground) > 0
+                    losses += was_feasible and count_obstacles_along(path, ground) > 0
         if rules.elitism:
             copy(best[:best_length], paths[0])
             lengths[0] = best_length
@@ -411,8 +411,8 @@ def _evaluate(path, ground, penalty):
     """Energy of a path plus penalty, and occupied cells its edges meet (meledje, eqs. 1 to 3)."""
     energy = 0.0
     for k in range(len(path) - 1):
-        energy += edge_energy(ground, path[k], path[k + 1])
-    encounters = obstacles_along(path, ground)
+        energy += compute_edge_energy(ground, path[k], path[k + 1])
+    encounters = count_obstacles_along(path, ground)
     return energy + penalty * encounters, encounters
 
 
@@ -463,11 +463,11 @@ def compute_free_ways(target: int, free: np.ndarray, ground: Ground, most_nodes:
     """
     ways = np.zeros((ground.occupied.size, most_nodes + 1))
     for cell in range(len(ways)):
-        ways[cell, 0] = obstacles_on(ground, cell, target) == 0
+        ways[cell, 0] = count_obstacles_on(ground, cell, target) == 0
     for inner in range(1, most_nodes + 1):
         for cell in range(len(ways)):
             for following in free:
-                if obstacles_on(ground, cell, following) == 0:
+                if count_obstacles_on(ground, cell, following) == 0:
                     ways[cell, inner] += ways[following, inner - 1] / len(free)
     return ways
 
@@ -493,7 +493,7 @@ def draw_feasible_path(
     weights = np.empty(len(free))
     for k in range(1, inner + 1):
         for c in range(len(free)):
-            is_free = obstacles_on(ground, path[k - 1], free[c]) == 0
+            is_free = count_obstacles_on(ground, path[k - 1], free[c]) == 0
             weights[c] = ways[free[c], inner - k] if is_free else 0.0
         path[k] = free[draw_parents(rng, weights, 1)[0]]
     path[inner + 1] = target
@@ -506,7 +506,7 @@ def _walk(rng, path, target, free, ground):
     if it becomes too long or sees no new cell.
     """
     length = 1
-    while obstacles_on(ground, path[length - 1], target) > 0:
+    while count_obstacles_on(ground, path[length - 1], target) > 0:
         if length == len(path) - 1:
             return 0
         path[length] = -1
@@ -546,7 +546,9 @@ def _draw_one_of_few(rng, path, length, free, ground):
 @allocation_free
 def _can_continue(cell, path, length, ground):
     """Whether a cell is visible from the last cell of a path and not yet part of it."""
-    return obstacles_on(ground, path[length - 1], cell) == 0 and not _is_among(cell, path, length)
+    return count_obstacles_on(ground, path[length - 1], cell) == 0 and not _is_among(
+        cell, path, length
+    )
 
 
 @allocation_free

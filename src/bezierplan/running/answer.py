@@ -19,7 +19,7 @@ from bezierplan.geometry.checker.hulls import LARGEST_DEGREE
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.words import told
+from bezierplan.schema.words import describe_in_one_line
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}
@@ -52,7 +52,7 @@ def of(name: str) -> Iterator[None]:
     except Unfit as fault:
         raise PlannerFailure(f"{name}: its answer: {fault}") from None
     except Exception as error:
-        raise PlannerFailure(f"{name}: {told(error)}") from error
+        raise PlannerFailure(f"{name}: {describe_in_one_line(error)}") from error
 
 
 def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:

@@ -24,7 +24,7 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import bounds
 from bezierplan.workspaces import files, robot, worlds
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import grown_of, original
+from bezierplan.workspaces.grown import find_growth, original
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.worlds import World
 
@@ -38,7 +38,7 @@ def place_problem(problem: Problem, kinds: Collection[str] | None = None) -> Pro
 
     Raises ValueError as `build` does.
     """
-    home = robot.suited(problem.workspace, kinds)
+    home = robot.choose_suitable(problem.workspace, kinds)
     return build(problem.name, {"start": problem.start, "target": problem.target}, home)
 
 
@@ -64,7 +64,7 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
             raise ValueError(f"{key}: {error}") from None
     else:
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
-    grown, home = grown_of(workspace), original(workspace)
+    grown, home = find_growth(workspace), original(workspace)
     x_low, x_high, y_low, y_high = home.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
         raise ValueError(
@@ -149,7 +149,7 @@ def write(
             "start_y": problem.start[1],
             "target_x": problem.target[0],
             "target_y": problem.target[1],
-            "drawn": files.to_json(problem.workspace),
+            "drawn": files.write_json(problem.workspace),
         }
         | ({"world": worlds.to_json(moving[name])} if moving else {})
         for name, problem in problems.items()
@@ -164,7 +164,7 @@ def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     from bezierplan.running import rows
 
     table = rows.read(file, threads=False).to_pylist()
-    drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
+    drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
         row["problem"]: Problem(
             row["problem"],

@@ -28,7 +28,7 @@ from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
-from bezierplan.schema.words import plain
+from bezierplan.schema.words import escape
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
@@ -48,7 +48,7 @@ class Difference(NamedTuple):
     what: str
 
     def __str__(self) -> str:
-        return plain(" ".join(f"{self.file}: {self.what}".split()))
+        return escape(" ".join(f"{self.file}: {self.what}".split()))
 
 
 def _describe_difference(file: str, run: str, column: str, old: Any, new: Any) -> Difference:

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from bezierplan.schema.words import plain
+from bezierplan.schema.words import escape
 
 
 class Fault(ValueError):
@@ -17,7 +17,7 @@ class Fault(ValueError):
     """
 
     def __init__(self, *lines: str) -> None:
-        self.lines = [plain(line, 1500) for line in lines]
+        self.lines = [escape(line, 1500) for line in lines]
         super().__init__(self.lines[0])
 
 
@@ -44,7 +44,7 @@ for _tag, _pattern, _first in (
 _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.value))
 
 
-def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
+def _build_mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
     content = {}
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -60,15 +60,15 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
     return content
 
 
-_Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+_Loader.add_constructor("tag:yaml.org,2002:map", _build_mapping)
 
 
 def read(file: Path, location: str | None = None) -> Any:
     """The content of a YAML file. Raises Fault, beginning with the place (default: file name)."""
-    return parse(text_of(file, location or str(file)), location or str(file))
+    return parse(read_text(file, location or str(file)), location or str(file))
 
 
-def text_of(file: Path, location: str) -> str:
+def read_text(file: Path, location: str) -> str:
     """The text of a file. Raises Fault, beginning with a location, unless it is one."""
     try:
         return file.read_text(encoding="utf-8-sig")
@@ -99,7 +99,7 @@ def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") 
         where = f"; one of your own stands in {home} of the study's folder" if home else ""
         if str(name) in map(str, names):  # a number in quotes, or text without
             name, names = repr(name), map(repr, names)
-        raise Fault(f"{location}: {name}: unknown{closest(name, names)}{where}")
+        raise Fault(f"{location}: {name}: unknown{suggest_closest(name, names)}{where}")
 
 
 def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None:
@@ -109,7 +109,7 @@ def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None
         check_known(word, names, location)
 
 
-def closest(word: Any, names: Iterable[Any]) -> str:
+def suggest_closest(word: Any, names: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
     about an unknown one.
     """

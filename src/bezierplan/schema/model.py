@@ -28,11 +28,11 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, suggest_closest
 
 
 class Model(BaseModel):
-    """A mapping whose keys are exactly the fields. Only `parsed` raises Fault."""
+    """A mapping whose keys are exactly the fields. Only `parse` raises Fault."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
@@ -40,18 +40,18 @@ class Model(BaseModel):
     @classmethod
     def _check_keys(cls, content: Any) -> Any:
         """Report unknown keys first: a misspelt key is also a missing one."""
-        fields = keys(cls)
+        fields = list_keys(cls)
         if not isinstance(content, dict):
-            raise wrong(
-                f"{shown(content)}: expected a mapping with "
+            raise build_error(
+                f"{show_value(content)}: expected a mapping with "
                 f"{', '.join([key for key in fields if fields[key].is_required()] or fields)}"
             )
         for key in content:
             if key not in fields:
-                raise wrong(f"{key}: unknown key{closest(key, fields)}")
+                raise build_error(f"{key}: unknown key{suggest_closest(key, fields)}")
         for key, field in fields.items():
             if field.is_required() and key not in content:
-                raise wrong(f"{key}: missing key; {field.description}")
+                raise build_error(f"{key}: missing key; {field.description}")
         return content
 
     @field_validator("*", mode="wrap")
@@ -64,7 +64,9 @@ class Model(BaseModel):
             faults = error.errors(include_url=False)
             if any(fault["loc"] for fault in faults):
                 raise
-            raise wrong(_fault(faults[0], cls.model_fields[info.field_name])) from None
+            raise build_error(
+                _describe_fault(faults[0], cls.model_fields[info.field_name])
+            ) from None
 
     def plain(self, *without: str) -> dict[str, Any]:
         """The mapping as written, in plain values; some keys can be left out."""
@@ -84,27 +86,27 @@ class Model(BaseModel):
 M = TypeVar("M", bound=Model)
 
 
-def keys(model: type[Model]) -> dict[str, FieldInfo]:
+def list_keys(model: type[Model]) -> dict[str, FieldInfo]:
     """Keys of a mapping -> what they hold."""
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
-def parsed(model: type[M], content: Any, location: str) -> M:
+def parse(model: type[M], content: Any, location: str) -> M:
     """The content of a file as a model. Raises Fault, beginning with a location."""
-    sound, faults, _ = sound_part(model, content, location)
+    sound, faults, _ = parse_sound_part(model, content, location)
     if faults:
         raise Fault(*faults)
     return sound
 
 
-def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
+def parse_sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
     """What is sound of the content of a file, the faults of the rest, and the names of the entries
     that are left out for them. Raises Fault if too little is left.
     """
     try:
         return model.model_validate(content), [], []
     except ValidationError as error:
-        fault = fault_of(error, location)
+        fault = describe_fault(error, location)
         places = {each["loc"][:2] for each in error.errors(include_url=False)}
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
@@ -114,30 +116,34 @@ def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str
         raise fault from None
 
 
-def fault_of(error: ValidationError, *location: str) -> Fault:
+def describe_fault(error: ValidationError, *location: str) -> Fault:
     """All faults of a model, those that others may follow from first, each with a location and the
     keys that lead to it.
     """
     # After a key that is itself wrong, pydantic puts `[key]`.
     lines = [
-        [*location, *(str(key) for key in fault["loc"] if key != "[key]"), _fault(fault, None)]
+        [
+            *location,
+            *(str(key) for key in fault["loc"] if key != "[key]"),
+            _describe_fault(fault, None),
+        ]
         for fault in error.errors(include_url=False)
     ]
     lines.sort(key=lambda line: (": unknown key" not in line[-1], len(line)))
     return Fault(*map(": ".join, lines))
 
 
-def wrong(text: str) -> PydanticCustomError:
+def build_error(text: str) -> PydanticCustomError:
     """An error with this text at the end of the line, unchanged even if it contains braces."""
     return PydanticCustomError("wrong", "{text}", {"text": text})
 
 
-def expected(text: str) -> PydanticCustomError:
+def build_expectation(text: str) -> PydanticCustomError:
     """An error of a value in the place of which this was expected."""
     return PydanticCustomError("expected", "{text}", {"text": text})
 
 
-def shown(value: Any) -> str:
+def show_value(value: Any) -> str:
     """A value as a message shows it."""
     return textwrap.shorten(repr(value), 100, placeholder="...")
 
@@ -159,30 +165,30 @@ _EXPECTED = {
 """By the kind of a fault in a value that has no description."""
 
 
-def _fault(fault: Any, field: FieldInfo | None) -> str:
+def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
     """The end of a message, by a pydantic record; for a field's value, by its description."""
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
     known = re.findall(r"'([^']*)'", context.get("expected", ""))
     if known and isinstance(value, str):
-        return f"{value}: unknown{closest(value, known)}"
+        return f"{value}: unknown{suggest_closest(value, known)}"
     words = _EXPECTED.get(fault["type"])
     wanted = words.format_map(context) if words else context.get("text", fault["msg"])
     of_yaml = isinstance(value, int | float) and "one line" in context.get("text", "")
     quoted = f"; `{value}` is no text in YAML: put it in quotes" if of_yaml else ""
-    return f"{shown(value)}: expected {field.description if field else wanted}{quoted}"
+    return f"{show_value(value)}: expected {field.description if field else wanted}{quoted}"
 
 
 # Types of values. Numbers stay as they are written: 20 is part of names, and 20.0 another one.
 
 
-def value(fits: Callable[[Any], bool], form: str) -> PlainValidator:
+def build_value_type(fits: Callable[[Any], bool], form: str) -> PlainValidator:
     """A type of single value, kept as written."""
 
     def check(entry: Any) -> Any:
         if not fits(entry):
-            raise expected(form)
+            raise build_expectation(form)
         return entry
 
     return PlainValidator(check)
@@ -198,7 +204,7 @@ def is_line(entry: Any) -> bool:
     return isinstance(entry, str) and bool(entry.strip()) and entry.isprintable()
 
 
-def _as_written(entry: Any, check: Callable[[Any], Any]) -> Any:
+def _keep_as_written(entry: Any, check: Callable[[Any], Any]) -> Any:
     check(entry)
     return entry
 
@@ -209,26 +215,30 @@ LARGEST = 1e12
 """Largest coordinate, length or weight."""
 
 
-def number(**limits: float | None) -> Any:
+def build_number_type(**limits: float | None) -> Any:
     """A type of number within limits: `gt`, `ge`, `le`."""
     given: Any = {"ge": -LARGEST, "le": LARGEST} | limits
-    return Annotated[float, Field(**given), WrapValidator(_as_written)]
+    return Annotated[float, Field(**given), WrapValidator(_keep_as_written)]
 
 
-def whole(low: int, high: int) -> Any:
+def limit_whole(low: int, high: int) -> Any:
     """A limit on a whole number."""
     return Field(ge=low, le=high)
 
 
-Number, Positive, NotNegative = number(), number(gt=0, ge=None), number(ge=0)
-Whole = Annotated[int, whole(0, MOST)]
-Count = Annotated[int, whole(1, MOST)]
-Decimals = Annotated[int, whole(0, 15)]
+Number, Positive, NotNegative = (
+    build_number_type(),
+    build_number_type(gt=0, ge=None),
+    build_number_type(ge=0),
+)
+Whole = Annotated[int, limit_whole(0, MOST)]
+Count = Annotated[int, limit_whole(1, MOST)]
+Decimals = Annotated[int, limit_whole(0, 15)]
 Flag = bool
-Line = Annotated[str, value(is_line, "one line of text, not blank")]
+Line = Annotated[str, build_value_type(is_line, "one line of text, not blank")]
 Setting = Annotated[
     str | float | bool | None,
-    value(
+    build_value_type(
         lambda entry: (
             entry is None
             or is_line(entry)
@@ -240,9 +250,9 @@ Setting = Annotated[
 """A value of a planner's setting, which may be infinite, or of a column."""
 
 
-def matching(pattern: str, form: str) -> PlainValidator:
+def match_text(pattern: str, form: str) -> PlainValidator:
     """A type of text that a regular expression matches as a whole."""
-    return value(
+    return build_value_type(
         lambda entry: isinstance(entry, str) and bool(re.fullmatch(pattern, entry)),
         form,
     )
@@ -250,38 +260,38 @@ def matching(pattern: str, form: str) -> PlainValidator:
 
 Name = Annotated[
     str,
-    matching(
+    match_text(
         r"[a-z][a-z0-9_]{0,99}",
         "a name of lower-case letters, digits and _ that begins with a letter",
     ),
 ]
 
 
-def one_or_list(entry: Any) -> list:
+def convert_to_list(entry: Any) -> list:
     """A value, or a list of values, as a list."""
     return entry if isinstance(entry, list) else [entry]
 
 
-def identity(entry: Any) -> str:
+def identify(entry: Any) -> str:
     """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are
     not; also inside lists.
     """
     if isinstance(entry, list):
-        return f"[{', '.join(map(identity, entry))}]"
+        return f"[{', '.join(map(identify, entry))}]"
     return repr(float(entry) if is_number(entry) else entry)
 
 
-def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
+def build_list_type(item: Any, *, least: int = 1, single: bool = False) -> Any:
     """A type of list without duplicates, or with `single` also of a lone item without a list, kept
     as written.
     """
-    distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_distinct)]
+    distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_check_distinct)]
     if not single:
         return distinct
-    return Annotated[list[item], _either(list, distinct, item)]
+    return Annotated[list[item], _build_either_type(list, distinct, item)]
 
 
-def _either(kind: type, of_kind: Any, other: Any) -> PlainValidator:
+def _build_either_type(kind: type, of_kind: Any, other: Any) -> PlainValidator:
     """A type of value that is of one type if it is a list, or a mapping, and of another if not."""
     as_kind, as_other = TypeAdapter(of_kind), TypeAdapter(other)
     return PlainValidator(
@@ -291,45 +301,45 @@ def _either(kind: type, of_kind: Any, other: Any) -> PlainValidator:
     )
 
 
-def _distinct(entry: list) -> list:
-    texts = [identity(each) for each in entry]
+def _check_distinct(entry: list) -> list:
+    texts = [identify(each) for each in entry]
     for number, text in enumerate(texts):
         if text in texts[:number]:
-            raise wrong(f"{shown(entry)}: {entry[number]!r} is listed twice")
+            raise build_error(f"{show_value(entry)}: {entry[number]!r} is listed twice")
     return entry
 
 
-Values = listed(Setting, single=True)
+Values = build_list_type(Setting, single=True)
 """A value of a column or a list of them."""
 
 
-def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
+def build_choice_type(key: str, models: dict[str, type[Model]]) -> PlainValidator:
     """A type of mapping in which the value of one key selects the model."""
 
     def check(entry: Any) -> Model:
         if not isinstance(entry, dict):
-            raise expected(f"a mapping with {key}")
+            raise build_expectation(f"a mapping with {key}")
         if key not in entry:
-            raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
+            raise build_error(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]
         if not isinstance(kind, str) or kind not in models:
-            raise wrong(f"{key}: {kind}: unknown{closest(kind, models)}")
+            raise build_error(f"{key}: {kind}: unknown{suggest_closest(kind, models)}")
         return models[kind].model_validate(entry)
 
     return PlainValidator(check)
 
 
-def mapping_or(mapping: Any, other: Any) -> PlainValidator:
+def build_mapping_type(mapping: Any, other: Any) -> PlainValidator:
     """A type of value that is either a mapping of one type, or of another type."""
-    return _either(dict, mapping, other)
+    return _build_either_type(dict, mapping, other)
 
 
 # Names defined elsewhere.
 
 
 class Names(NamedTuple):
-    """Marks a field whose text names something: a metric, a column, a method, ...; `named` finds
-    these names, and `checks` looks them up.
+    """Marks a field whose text names something: a metric, a column, a method, ...; `find_names`
+    finds these names, and `checks` looks them up.
     """
 
     what: str
@@ -357,28 +367,32 @@ ARGUMENTS = (
 )
 
 
-def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:
+def find_names(
+    model: Model, path: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], str, Any]]:
     """Every name in a model that is defined elsewhere: the keys to it, what it names, the name."""
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
-            yield from _named(getattr(model, key), field.annotation, field.metadata, (*path, key))
+            yield from _find_names(
+                getattr(model, key), field.annotation, field.metadata, (*path, key)
+            )
 
 
-def _named(
+def _find_names(
     content: Any, annotation: Any, metadata: Any, path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], str, Any]]:
     if typing.get_origin(annotation) is Annotated:
         metadata, annotation = annotation.__metadata__, annotation.__origin__
     parts = typing.get_args(annotation) or (None,)
     if isinstance(content, Model):
-        yield from named(content, path)
+        yield from find_names(content, path)
     elif marks := [item.what for item in metadata if isinstance(item, Names)]:
         yield path, marks[0], content
     elif isinstance(content, list):
         for number, item in enumerate(content):
-            yield from _named(item, parts[0], (), (*path, str(number)))
+            yield from _find_names(item, parts[0], (), (*path, str(number)))
     elif isinstance(content, dict):
         for key, item in content.items():
-            yield from _named(item, parts[-1], (), (*path, key))
-    elif typing.get_origin(annotation) is list:  # a lone item of `one_or_list`
-        yield from _named(content, parts[0], (), path)
+            yield from _find_names(item, parts[-1], (), (*path, key))
+    elif typing.get_origin(annotation) is list:  # a lone item of `convert_to_list`
+        yield from _find_names(content, parts[0], (), path)

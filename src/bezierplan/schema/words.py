@@ -9,7 +9,7 @@ LONGEST = 500
 """Characters of the longest text of an exception that is shown."""
 
 
-def plain(text: str, most: int | None = None) -> str:
+def escape(text: str, most: int | None = None) -> str:
     """A text with its control characters escaped, line breaks too, and cut after `most` characters,
     which is told.
     """
@@ -19,7 +19,7 @@ def plain(text: str, most: int | None = None) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
 
 
-def told(error: BaseException) -> str:
+def describe_in_one_line(error: BaseException) -> str:
     """An exception as one line: the line of a user's file that it comes from, if it does; its class
     and its text, which foreign code may have written.
     """
@@ -30,4 +30,4 @@ def told(error: BaseException) -> str:
         if str(frame.f_globals.get("__name__")).startswith(USERS)
     ]
     name = "sys.exit" if isinstance(error, SystemExit) else type(error).__name__
-    return plain("".join(places[-1:]) + (f"{name}: {text}" if text else name), LONGEST)
+    return escape("".join(places[-1:]) + (f"{name}: {text}" if text else name), LONGEST)

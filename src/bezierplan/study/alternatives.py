@@ -13,7 +13,7 @@ from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.figures.panels.alternatives import FEW
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import Experiment
@@ -21,7 +21,7 @@ from bezierplan.study.experiments import Experiment
 DEFAULT = "default"
 
 
-def default_of(study: Study, assumption: AssumptionEntry) -> Any:
+def find_default(study: Study, assumption: AssumptionEntry) -> Any:
     """Return the value that runs use where an assumption leaves it to a setting: one for the
     methods without a value of their own, or each of those that it names.
     """
@@ -38,7 +38,7 @@ def default_of(study: Study, assumption: AssumptionEntry) -> Any:
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
-def under(study: Study, values: dict[str, Any]) -> Study:
+def apply_values(study: Study, values: dict[str, Any]) -> Study:
     """Return the study with other values of some assumptions, by id. On a map that they change, no
     best known path counts.
     """
@@ -55,7 +55,7 @@ def under(study: Study, values: dict[str, Any]) -> Study:
     return study.but(values=values, workspaces=workspaces, problems=problems)
 
 
-def meaning(study: Study, values: dict[str, Any]) -> str:
+def describe_values(study: Study, values: dict[str, Any]) -> str:
     """Return what some values of assumptions change, in words."""
     details = {each.id: each.detail for each in study.assumptions}
     return "; ".join(f"{details[name]}: {value}" for name, value in values.items())
@@ -71,7 +71,7 @@ def is_judged(claim: Claim) -> bool:
     return all(check.experiments and not check.timed for check in primary)
 
 
-def claims_of(study: Study, reading: ReadingEntry) -> list[Claim]:
+def select_claims(study: Study, reading: ReadingEntry) -> list[Claim]:
     """Return the claims that are judged under a reading."""
     return [
         claim
@@ -80,17 +80,17 @@ def claims_of(study: Study, reading: ReadingEntry) -> list[Claim]:
     ]
 
 
-def joint_readings(study: Study) -> dict[str, Study]:
+def build_joint_readings(study: Study) -> dict[str, Study]:
     """Return the study under each joint reading, with the claims that are judged under it, by the
     name of the folder of its results.
     """
     return {
-        each.folder: with_claims(under(study, each.values), claims_of(study, each))
+        each.folder: keep_claims(apply_values(study, each.values), select_claims(study, each))
         for each in study.readings
     }
 
 
-def single_alternatives(study: Study) -> dict[str, Study]:
+def build_single_alternatives(study: Study) -> dict[str, Study]:
     """Return the study with the claims of which a figure draws all alternatives, by default and
     under each alternative that no sentence excludes and that changes some of their runs, with few
     runs, by the name of the folder of its results; nothing without such a figure.
@@ -99,12 +99,12 @@ def single_alternatives(study: Study) -> dict[str, Study]:
     claims = [claim for claim in study.claims if claim.id in drawn]
     if not claims:
         return {}
-    few = with_few_runs(with_claims(study, claims))
-    contents = [few.experiments[name] for name in experiments_of_claims(few.claims)]
+    few = limit_runs(keep_claims(study, claims))
+    contents = [few.experiments[name] for name in list_experiments(few.claims)]
     methods = {method for content in contents for method in content.methods}
     homes = {few.problems[name].workspace for content in contents for name in content.problems}
     return {DEFAULT: few} | {
-        folder_of(each.id, value): under(few, {each.id: value})
+        name_folder(each.id, value): apply_values(few, {each.id: value})
         for each in study.assumptions
         if methods.intersection(study.concerned(each)) or homes.intersection(each.workspace)
         if not each.excluded_by
@@ -112,12 +112,12 @@ def single_alternatives(study: Study) -> dict[str, Study]:
     }
 
 
-def folder_of(identity: str, value: Any) -> str:
+def name_folder(identity: str, value: Any) -> str:
     """Return the name of the folder of the results under an alternative."""
     return re.sub(r"[^\w.+-]", "_", f"{identity}_{value}")
 
 
-def with_claims(study: Study, claims: list[Claim]) -> Study:
+def keep_claims(study: Study, claims: list[Claim]) -> Study:
     """Return the study with some claims alone, of which it has the primary checks in the primary
     variant, and with no other runs than these checks name.
     """
@@ -127,19 +127,19 @@ def with_claims(study: Study, claims: list[Claim]) -> Study:
     ]
     experiments = dict(study.experiments)
     checks = [check for claim in claims for check in in_variant(claim.checks, *variants(claim) * 2)]
-    for name in experiments_of_claims(claims):
+    for name in list_experiments(claims):
         naming = [check for check in checks if name in check.experiments]
-        experiments[name] = _with_checks(study, experiments[name], naming)
+        experiments[name] = _keep_checks(study, experiments[name], naming)
     return study.but(claims=claims, experiments=experiments)
 
 
-def _with_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) -> Experiment:
+def _keep_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) -> Experiment:
     """Return an experiment with what checks name of its problems, methods and varied values."""
 
     def is_named(**columns: Any) -> bool:
         wheres = [getattr(check, "where", {}) for check in checks]
         return any(
-            all(value in one_or_list(where.get(name, value)) for name, value in columns.items())
+            all(value in convert_to_list(where.get(name, value)) for name, value in columns.items())
             for where in wheres
         )
 
@@ -167,12 +167,12 @@ def _with_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) ->
     )
 
 
-def with_few_runs(study: Study) -> Study:
+def limit_runs(study: Study) -> Study:
     """Return the study with `FEW` runs of each method under each condition, or in each field that
     is drawn at random, at most.
     """
     problems = {
-        name: problem.but(layouts=_at_most(problem.layouts, FEW)) if problem.layouts else problem
+        name: problem.but(layouts=_limit(problem.layouts, FEW)) if problem.layouts else problem
         for name, problem in study.problems.items()
     }
     experiments = {}
@@ -181,21 +181,21 @@ def with_few_runs(study: Study) -> Study:
         layouts = max((max(each.values()) for each in fields), default=1)
         most = max(1, FEW // layouts)
         experiments[name] = content.but(
-            repeats=_at_most(content.repeats, most), chunk=_at_most(content.chunk, most), fewer={}
+            repeats=_limit(content.repeats, most), chunk=_limit(content.chunk, most), fewer={}
         )
     return study.but(problems=problems, experiments=experiments)
 
 
-def _at_most(numbers: dict[str, int], most: int) -> dict[str, int]:
+def _limit(numbers: dict[str, int], most: int) -> dict[str, int]:
     return {scale: min(number, most) for scale, number in numbers.items()}
 
 
-def experiments_of_claims(claims: Iterable[Claim]) -> list[str]:
+def list_experiments(claims: Iterable[Claim]) -> list[str]:
     """Return the names of the experiments whose runs decide claims, once each; variants may name
     more.
     """
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(
-        one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])
+        convert_to_list(value) for claim in claims for value in claim.variants.get("experiment", [])
     )
     return list(dict.fromkeys(named))

@@ -10,7 +10,15 @@ from bezierplan.analysis.table_kinds import TABLES, TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
-from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or, one_of
+from bezierplan.schema.model import (
+    Line,
+    Model,
+    Name,
+    Setting,
+    build_choice_type,
+    build_list_type,
+    build_mapping_type,
+)
 from bezierplan.study.experiments import Settings
 from bezierplan.workspaces.kinds import FileName
 
@@ -30,7 +38,7 @@ class ArtefactsFile(Model):
         + "; left out: as its planner does in all "
         "studies, or unlike most other methods",
     )
-    tables: dict[Name, Annotated[TableEntry, one_of("kind", TABLES)]] = Field(
+    tables: dict[Name, Annotated[TableEntry, build_choice_type("kind", TABLES)]] = Field(
         {}, description="name → a table"
     )
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
@@ -47,11 +55,13 @@ class LayoutFile(Model):
 class ConfigFile(Model):
     """The file `config/config.yaml`, or what `--config` gives."""
 
-    studies: listed(Line) = Field(
+    studies: build_list_type(Line) = Field(
         description="a list of studies, each the name of a folder in `config/studies` or a path"
     )
-    settings: dict[Name, dict[FileName, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
-        {},
-        description="study → settings that override those of the same name in its "
-        "`experiments.yaml`",
+    settings: dict[Name, dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]]] = (
+        Field(
+            {},
+            description="study → settings that override those of the same name in its "
+            "`experiments.yaml`",
+        )
     )

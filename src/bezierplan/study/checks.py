@@ -29,16 +29,16 @@ from bezierplan.planners import is_file, list_planners, load_planner, read_setti
 from bezierplan.running import columns, problems
 from bezierplan.running.execution import resolve_settings
 from bezierplan.running.guard import interface
-from bezierplan.schema.checked import Fault, check_all, check_known, text_of
-from bezierplan.schema.model import Model, identity, named, one_or_list, parsed
-from bezierplan.schema.words import told
+from bezierplan.schema.checked import Fault, check_all, check_known, read_text
+from bezierplan.schema.model import Model, convert_to_list, find_names, identify, parse
+from bezierplan.schema.words import describe_in_one_line
 from bezierplan.study import published
-from bezierplan.study.alternatives import is_judged, under
+from bezierplan.study.alternatives import apply_values, is_judged
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
-from bezierplan.study.design import Design, design, together
-from bezierplan.study.experiments import Experiment, Method, ProblemEntry, descriptions
-from bezierplan.study.jobs import job
+from bezierplan.study.design import Design, build_design, join_designs
+from bezierplan.study.experiments import Experiment, Method, ProblemEntry, build_descriptions
+from bezierplan.study.jobs import build_chunk
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.problem import Problem
@@ -61,7 +61,7 @@ class Checks:
         self.faults = []
         self.words = {"generation"}
         self._place = ()
-        self.design = cache(lambda experiment: design(self.study, experiment))
+        self.design = cache(lambda experiment: build_design(self.study, experiment))
         self.runs = cache(self._runs)
         self.built = cache(self._built)
         self.known = {
@@ -92,7 +92,9 @@ class Checks:
         except Exception as error:
             # What is no fault is of a study's own code, or follows from a fault found before.
             known = isinstance(error, ValueError)
-            for line in getattr(error, "lines", [str(error) if known else told(error)]):
+            for line in getattr(
+                error, "lines", [str(error) if known else describe_in_one_line(error)]
+            ):
                 found = any(each.endswith(line) for each in self.faults)
                 if not (found if known else self.faults or self.invalid):
                     self.faults.append(": ".join([*self._place, line]))
@@ -128,7 +130,7 @@ class Checks:
                     for name in compared.experiments:
                         check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
         with self.at():
-            named = " ".join(text_of(file, "") for file in study.folder.glob("*.yaml"))
+            named = " ".join(read_text(file, "") for file in study.folder.glob("*.yaml"))
             for file in map(Path, study.published_files()):
                 header = {*next(iter(published.read(file).values()))}
                 if header.issuperset(published.COLUMNS) and file.stem not in named:
@@ -166,7 +168,7 @@ class Checks:
         self.names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
-            inside(self.study.folder, method.planner, location)
+            check_inside(self.study.folder, method.planner, location)
         else:
             check_known(method.planner, list_planners(), "planner", f"{method.planner}.py")
         module = interface.load_planner_module(self.study.planner(name), location)
@@ -237,7 +239,7 @@ class Checks:
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
-        described = descriptions(study, {name: problem.plain("layouts") | drawn})
+        described = build_descriptions(study, {name: problem.plain("layouts") | drawn})
         return problems.build_all(described, study.folder)[0][name]
 
     def experiment(self, name: str, experiment: Experiment) -> None:
@@ -287,7 +289,7 @@ class Checks:
                 interface.ask(module.serves, f"{where}: problem {problem}", self.built(problem))
         if not self.complete or method in self.invalid:
             return
-        described = job(study, name, method, "full", 0)
+        described = build_chunk(study, name, method, "full", 0)
         # One problem for each distinct set of problem settings.
         apart = {
             str(met.get("settings")): (problem, met)
@@ -305,9 +307,9 @@ class Checks:
         """Names in a model refer to something that exists. The columns of a panel without runs
         belong to its function.
         """
-        experiments = one_or_list(getattr(model, "experiment", None) or [])
+        experiments = convert_to_list(getattr(model, "experiment", None) or [])
         claim = isinstance(model, ClaimCheck)
-        for path, what, name in named(model):
+        for path, what, name in find_names(model):
             key = ": ".join(path[:-1] if path[-1].isdecimal() else path)
             self.words.add(str(name))
             if what in self.known and name not in self.invalid:
@@ -315,7 +317,7 @@ class Checks:
                 check_known(name, self.known[what], key, home.get(what, ""))
             elif what in ("file", "published"):
                 folder = "published/" if what == "published" else ""
-                inside(self.study.folder, f"{folder}{name}", f"{key}: {name}")
+                check_inside(self.study.folder, f"{folder}{name}", f"{key}: {name}")
             elif experiments:
                 self.of_runs(tuple(experiments), claim, what, name, key)
             if what in ("function", "world") and len(path) == 1:
@@ -323,7 +325,7 @@ class Checks:
 
     def _runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
         """The runs of experiments; those of claims without baselines."""
-        return together(
+        return join_designs(
             [self.design(each) for each in experiments], self.study.baselines if claim else ()
         )
 
@@ -359,7 +361,7 @@ class Checks:
                     parameter.annotation,
                     Field(description=f"{wanted}, as the function declares"),
                 )
-        parsed(create_model("Arguments", __base__=Model, **accepted), arguments, "arguments")
+        parse(create_model("Arguments", __base__=Model, **accepted), arguments, "arguments")
 
     # artefacts.yaml
 
@@ -382,7 +384,7 @@ class Checks:
             label = study.labels.get(name, name)
             if (other := printed.setdefault(label, name)) != name:
                 raise Fault(f"labels: {other}, {name}: both {label}; expected a label for each")
-        own = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
+        own = re.findall(r"[\w.+-]+", read_text(study.folder / "experiments.yaml", ""))
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
             for name in getattr(each, "labels", {}).keys() - words:
@@ -408,7 +410,9 @@ class Checks:
             raise Fault(
                 f"experiment: {experiment}: nothing moves there; expected an experiment of drives"
             )
-        methods = one_or_list(panel.where.get("method", self.study.experiments[experiment].methods))
+        methods = convert_to_list(
+            panel.where.get("method", self.study.experiments[experiment].methods)
+        )
         if "method" in panel.one and len(methods) > 1 and getattr(panel, "hue", None) != "method":
             raise Fault(
                 f"where: selects {len(methods)} values of method; expected one, which is shown"
@@ -431,7 +435,7 @@ class Checks:
                     self.unmixed(judged[number])
         experiments = {name: None for check in claim.checks for name in check.experiments}
         for column, entries in claim.variants.items():
-            for value in (each for entry in entries for each in one_or_list(entry)):
+            for value in (each for entry in entries for each in convert_to_list(entry)):
                 if column in ("metric", "experiment"):
                     known = {"metric": metrics.METRICS, "experiment": self.study.experiments}
                     check_known(value, known[column], f"variants: {column}")
@@ -484,7 +488,7 @@ class Checks:
             check_known(method, methods, "with")
             check_all(settings, study.accepted(method), f"with: {method}")
         for value in assumption.alternatives:
-            changed = under(study, {identity: value})
+            changed = apply_values(study, {identity: value})
             for method in methods:
                 with self.at("alternatives", str(value), method):
                     self.settings(changed, method)
@@ -504,7 +508,7 @@ class Checks:
                 raise Fault(f"values: {key}: governs no setting, so that no run can have it")
             if assumption.excluded_by:
                 raise Fault(f"values: {key}: excluded by {assumption.excluded_by}")
-            if identity(value) not in map(identity, assumption.alternatives):
+            if identify(value) not in map(identify, assumption.alternatives):
                 raise Fault(
                     f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
                 )
@@ -524,13 +528,13 @@ class Checks:
                     f"claims: {claim}: rests on times or on no runs, so nothing can turn it"
                 )
         if self.complete and not self.invalid:
-            changed = under(study, reading.values)
+            changed = apply_values(study, reading.values)
             for method, *_ in settled:
                 with self.at("values", method):
                     self.settings(changed, method)
 
 
-def inside(folder: Path, name: str, location: str) -> None:
+def check_inside(folder: Path, name: str, location: str) -> None:
     """Raise Fault, beginning with a location, for a file of a study that is missing, is not a
     regular file, or lies outside its folder, also through a link.
     """

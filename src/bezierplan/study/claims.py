@@ -19,15 +19,15 @@ from bezierplan.schema.model import (
     Names,
     Setting,
     Where,
-    listed,
-    mapping_or,
-    matching,
-    shown,
-    wrong,
+    build_error,
+    build_list_type,
+    build_mapping_type,
+    match_text,
+    show_value,
 )
 from bezierplan.study.experiments import ProblemName
 
-AssumptionId = Annotated[str, matching(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")]
+AssumptionId = Annotated[str, match_text(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")]
 
 
 class ClaimsFile(Model):
@@ -43,12 +43,12 @@ class AssumptionEntry(Model):
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
     detail: Line = Field(description="what the paper leaves open, one line")
-    default: Annotated[Any, mapping_or(dict[Name, Setting], Setting)] = Field(
+    default: Annotated[Any, build_mapping_type(dict[Name, Setting], Setting)] = Field(
         None,
         description="the value that runs use; left out for a setting, whose value stands in "
         "`experiments.yaml`",
     )
-    alternatives: listed(Setting, least=0) = Field(
+    alternatives: build_list_type(Setting, least=0) = Field(
         description="a list of the other values that the setting can take; [] for none"
     )
     reason: Line = Field(description="why the default was chosen, one or two lines")
@@ -62,10 +62,10 @@ class AssumptionEntry(Model):
         "then are no readings",
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
-    methods: listed(Annotated[Name, Names("method")]) = Field(
+    methods: build_list_type(Annotated[Name, Names("method")]) = Field(
         [], description="the methods for which alone the alternatives of a setting are"
     )
-    problems: listed(Annotated[ProblemName, Names("problem")]) = Field(
+    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
         [],
         description="the problems on which alone the alternatives of a setting hold; the "
         "default is the value that is used on them",
@@ -85,10 +85,12 @@ class AssumptionEntry(Model):
     @model_validator(mode="after")
     def _check_setting(self) -> "AssumptionEntry":
         if self.setting is None and self.default is None:
-            raise wrong("default: missing key; the value that runs use, unless it is a setting's")
+            raise build_error(
+                "default: missing key; the value that runs use, unless it is a setting's"
+            )
         if self.setting is not None and self.default is not None:
-            raise wrong(
-                f"default: {shown(self.default)}: expected none beside a setting, whose value "
+            raise build_error(
+                f"default: {show_value(self.default)}: expected none beside a setting, whose value "
                 "stands in experiments.yaml"
             )
         return self
@@ -99,7 +101,7 @@ class ReadingEntry(Model):
 
     name: Annotated[
         str,
-        matching(
+        match_text(
             r"[A-Za-z0-9.-]+(,? [A-Za-z0-9.-]+){0,9}",
             "a few words of letters, digits, . and -, with single spaces between them",
         ),
@@ -112,7 +114,7 @@ class ReadingEntry(Model):
         description="why a careful reader of the paper could have written this program, one or two "
         "lines; no printed value is a reason"
     )
-    claims: listed(ClaimId) = Field(
+    claims: build_list_type(ClaimId) = Field(
         [],
         description="the claims that are judged under it; left out: those with `main`",
     )

@@ -9,7 +9,7 @@ from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
 from bezierplan.places import shorten_path
 from bezierplan.running.inputs import PAPER, choose_tree
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.study.artefacts import ArtefactsFile
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.experiments import Experiments
@@ -105,7 +105,7 @@ class Study(Experiments, ArtefactsFile):
     def reconstructed(self, table: Pivot) -> bool:
         """Whether runs of a table are on a map that the paper does not print."""
         problems = self.experiments[table.experiment].problems
-        shown = one_or_list(table.where.get("problem", problems))
+        shown = convert_to_list(table.where.get("problem", problems))
         return any(
             self.workspace_of(name).origin == "reconstructed" for name in problems if name in shown
         )

@@ -11,9 +11,9 @@ from bezierplan.planners import load_planner
 from bezierplan.running.columns import DRIVE_JOINED, DRIVE_RESULTS, JOINED, PLANNED, RESULTS
 from bezierplan.running.execution import identify_run
 from bezierplan.schema.checked import Fault, check_known
-from bezierplan.schema.model import is_number, one_or_list
+from bezierplan.schema.model import convert_to_list, is_number
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import job
+from bezierplan.study.jobs import build_chunk
 
 # Columns that are left out when bounds are joined, or are no numbers to choose by.
 _LEFT_OUT = ("least_length", "bound_path")
@@ -77,7 +77,7 @@ class Design(NamedTuple):
                     f"{key}: {wanted}: a {self.types[column]} that a run finds out is not selected "
                     "by its value; expected another column"
                 )
-            for value in one_or_list(wanted):
+            for value in convert_to_list(wanted):
                 kind = {"flag": bool, "word": str}.get(self.types[column], object)
                 if not isinstance(value, kind):
                     raise Fault(f"{key}: {value}: expected a {self.types[column]}")
@@ -111,10 +111,10 @@ class Design(NamedTuple):
         return ", ".join(self.experiments)
 
 
-def design(study: Study, experiment: str) -> Design:
+def build_design(study: Study, experiment: str) -> Design:
     """The runs of an experiment."""
     methods, moves = study.methods_of(experiment), study.moves(experiment)
-    chunks = [job(study, experiment, method, "full", 0) for method in methods]
+    chunks = [build_chunk(study, experiment, method, "full", 0) for method in methods]
     rows = [identify_run(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
     frame = pd.DataFrame(rows, dtype=object).drop(columns="id")
     planners = () if moves else (load_planner(study.planner(method)) for method in methods)
@@ -125,14 +125,14 @@ def design(study: Study, experiment: str) -> Design:
         [experiment],
         frame,
         {name: each for name, each in joined.items() if name not in _LEFT_OUT}
-        | {name: _type(frame[name].dropna().unique()) for name in frame}
+        | {name: _choose_type(frame[name].dropna().unique()) for name in frame}
         | (PLANNED | RESULTS),
         {study.kind_of(problem) for problem in problems} if not moves else set(),
         study.experiments[experiment].repeats["full"],
     )
 
 
-def together(designs: list[Design], without: Iterable[str] = ()) -> Design:
+def join_designs(designs: list[Design], without: Iterable[str] = ()) -> Design:
     """The runs of several experiments, without those of some methods."""
     rows = pd.concat([each.rows for each in designs])
     return Design(
@@ -144,7 +144,7 @@ def together(designs: list[Design], without: Iterable[str] = ()) -> Design:
     )
 
 
-def _type(values: Iterable[Any]) -> str:
+def _choose_type(values: Iterable[Any]) -> str:
     """The type of a column of settings or places with these values."""
     values = [*values]
     if values and all(isinstance(value, bool) for value in values):

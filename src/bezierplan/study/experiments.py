@@ -24,14 +24,14 @@ from bezierplan.schema.model import (
     Positive,
     Setting,
     Whole,
-    listed,
-    mapping_or,
-    matching,
-    number,
-    one_of,
-    parsed,
-    whole,
-    wrong,
+    build_choice_type,
+    build_error,
+    build_list_type,
+    build_mapping_type,
+    build_number_type,
+    limit_whole,
+    match_text,
+    parse,
 )
 from bezierplan.schema.model import Experiment as ExperimentName
 from bezierplan.schema.model import Workspace as WorkspaceName
@@ -43,11 +43,11 @@ Settings = dict[Name, Setting]
 PART = r"[A-Za-z0-9_.+-]+"
 """What a value must be like to be part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
-Part = Annotated[str, matching(PART, PART_EXPECTED)]
+Part = Annotated[str, match_text(PART, PART_EXPECTED)]
 Scales = Annotated[dict[Literal[SCALES], Count], Field(min_length=len(SCALES))]
 """A number for each scale."""
 ProblemName = Annotated[
-    str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
+    str, match_text(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
 ]
 Point = Annotated[list[Number], of_length(2, "[x, y]")]
 
@@ -97,7 +97,7 @@ class ProblemEntry(Model):
         description="how many a workspace drawn at random has, for smoke, full and extended; "
         "column `layout`",
     )
-    obstacles: listed(Annotated[int, whole(0, 100_000)]) = Field(
+    obstacles: build_list_type(Annotated[int, limit_whole(0, 100_000)]) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles "
         "(of `random_circles` the first so many of a "
@@ -105,7 +105,7 @@ class ProblemEntry(Model):
         "time (`random_changing_cells`); one problem "
         "for each of them and each layout; column `obstacles`",
     )
-    side: Annotated[int, whole(1, 5000)] = Field(
+    side: Annotated[int, limit_whole(1, 5000)] = Field(
         None,
         description="the side of a random field or of a map of blocks in cells, a whole "
         "number from 1 to 5000",
@@ -121,20 +121,24 @@ class ProblemEntry(Model):
         ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell"}
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}):
             given = " and ".join(sorted(ends)) or "neither"
-            raise wrong(f"{given}: expected either start and target, or start_cell and target_cell")
+            raise build_error(
+                f"{given}: expected either start and target, or start_cell and target_cell"
+            )
         if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
-            raise wrong("layouts and obstacles go together")
+            raise build_error("layouts and obstacles go together")
         return self
 
 
 class Experiment(Model):
     """Problems × varied values × methods × repeats."""
 
-    problems: listed(Annotated[ProblemName, Names("problem")]) = Field(
+    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
         description="a list of problems"
     )
-    methods: listed(Annotated[Name, Names("own method")]) = Field(description="a list of methods")
-    vary: dict[Name, listed(Setting)] = Field(
+    methods: build_list_type(Annotated[Name, Names("own method")]) = Field(
+        description="a list of methods"
+    )
+    vary: dict[Name, build_list_type(Setting)] = Field(
         {}, description="setting or preset → list of values; every combination is run"
     )
     seeds: Literal["own", "shared", "common"] = Field(
@@ -142,7 +146,7 @@ class Experiment(Model):
         description="whether a run's seed is its `own`, `shared` by all methods, or `common` to "
         "all methods and conditions",
     )
-    time_limit: number(ge=1, le=1_000_000) = Field(
+    time_limit: build_number_type(ge=1, le=1_000_000) = Field(
         600,
         description="seconds after which a single run, compiling included, is ended with its job, "
         "a number from 1 to 1000000",
@@ -168,18 +172,18 @@ class Experiment(Model):
                     f"expected at most {self.repeats[scale]}, the repeats, since a chunk "
                     "always runs whole"
                 )
-                raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {most}")
+                raise build_error(f"chunk: {scale}: {self.chunk[scale]}: {most}")
         chunk, most = self.chunk["extended"], self.repeats["extended"]
         for factor, fewer in self.fewer.items():
             for name, count in fewer.items():
                 if count % chunk or count >= most:
-                    raise wrong(
+                    raise build_error(
                         f"fewer: {factor}: {name}: {count}: expected a multiple of {chunk}, the "
                         f"chunk, below {most}, the repeats"
                     )
         for setting, values in self.vary.items():
             if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
-                raise wrong(
+                raise build_error(
                     f"vary: {setting}: {odd[0]!r}: is part of a run's name; expected "
                     f"{PART_EXPECTED}, or a number"
                 )
@@ -203,7 +207,7 @@ class BaselineEntry(Model):
     proposed: Annotated[Name, Names("own method")] = Field(
         None, description="the method that the paper proposes"
     )
-    experiments: listed(ExperimentName) = Field(
+    experiments: build_list_type(ExperimentName) = Field(
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"
     )
@@ -218,8 +222,8 @@ class Paper(Model):
     """The paper of a study."""
 
     title: Line = Field(description="one line")
-    authors: listed(Line) = Field(description="a list of names")
-    year: Annotated[int, whole(1800, 2200)] = Field(None, description="a whole number")
+    authors: build_list_type(Line) = Field(description="a list of names")
+    year: Annotated[int, limit_whole(1800, 2200)] = Field(None, description="a whole number")
     journal: Line = Field(None, description="where it appeared")
     doi: Line = Field(None, description="its DOI, such as 10.1609/aiide.v11i1.12808")
     link: Line = Field(None, description="where it can be read")
@@ -246,7 +250,7 @@ class ExperimentsFile(Model):
         "varies one of its settings. "
         "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
-    settings: dict[FileName, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
+    settings: dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]] = Field(
         description="settings of all methods. A planner's settings are the keyword-only arguments "
         "of its function `plan`; each "
         "needs a value, there "
@@ -262,7 +266,7 @@ class ExperimentsFile(Model):
     policies: dict[Name, Policy] = Field(
         {}, description="name → replanning policy of a robot in a dynamic environment"
     )
-    workspaces: dict[Name, Annotated[Workspace, one_of("kind", kinds())]] = Field(
+    workspaces: dict[Name, Annotated[Workspace, build_choice_type("kind", kinds())]] = Field(
         description="name → kind, unit, and the keys of the kind"
     )
     problems: dict[ProblemName, ProblemEntry] = Field(
@@ -413,16 +417,16 @@ class Experiments(ExperimentsFile):
 def read(folder: Path) -> Experiments:
     """What the file of a study defines. Raises Fault."""
     file = folder / "experiments.yaml"
-    content = parsed(ExperimentsFile, checked.read(file, shorten_path(file)), shorten_path(file))
+    content = parse(ExperimentsFile, checked.read(file, shorten_path(file)), shorten_path(file))
     return Experiments.of(folder, dict(content))
 
 
-def problems_job(study: Experiments, experiment: str, scale: str) -> Descriptions:
+def build_problems_job(study: Experiments, experiment: str, scale: str) -> Descriptions:
     """What the problems of an experiment depend on, except the content of map files."""
-    return descriptions(study, study.problems_of(experiment, scale))
+    return build_descriptions(study, study.problems_of(experiment, scale))
 
 
-def descriptions(study: Experiments, problems: dict[str, dict]) -> Descriptions:
+def build_descriptions(study: Experiments, problems: dict[str, dict]) -> Descriptions:
     """What some problems depend on, except the content of map files, from their plain values."""
     homes = sorted({problem["workspace"] for problem in problems.values()})
     return Descriptions(

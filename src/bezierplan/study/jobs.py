@@ -28,10 +28,10 @@ from bezierplan.places import shorten_path
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Shows
-from bezierplan.schema.model import keys, one_or_list
+from bezierplan.schema.model import convert_to_list, list_keys
 from bezierplan.study import alternatives
 from bezierplan.study.definition import Study
-from bezierplan.study.experiments import descriptions, problems_job
+from bezierplan.study.experiments import build_descriptions, build_problems_job
 
 Studies = dict[str, Study]
 
@@ -40,19 +40,19 @@ Studies = dict[str, Study]
 # Problems, bounds and runs
 
 
-def problems(study: Study, scale: str, experiment: str) -> Problems:
+def build_problems(study: Study, scale: str, experiment: str) -> Problems:
     """The problems of an experiment."""
-    described = problems_job(study, experiment, scale)
+    described = build_problems_job(study, experiment, scale)
     maps = study.maps(described.workspaces)
     return Problems(described, shorten_path(study.folder), sources=maps)
 
 
-def bounds(study: Study, scale: str, experiment: str) -> Bounds:
+def build_bounds(study: Study, scale: str, experiment: str) -> Bounds:
     """The bounds of an experiment."""
     return Bounds()
 
 
-def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
+def build_chunk(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
     """A chunk of runs, which always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale] if study.draws(method) else 1
@@ -68,7 +68,7 @@ def job(study: Study, experiment: str, method: str, scale: str, number: int) -> 
         method=method,
         planner=study.planner(method),
         settings={name: value for name, value in settings if name not in content.vary},
-        problems=_problems_met(study, experiment, method, scale, first),
+        problems=_list_problems(study, experiment, method, scale, first),
         vary=vary,
         presets={name: preset for name, preset in study.presets.items() if name in content.vary},
         seeds=content.seeds,
@@ -80,7 +80,7 @@ def job(study: Study, experiment: str, method: str, scale: str, number: int) -> 
     )
 
 
-def _problems_met(
+def _list_problems(
     study: Study, experiment: str, method: str, scale: str, first: int
 ) -> dict[str, dict]:
     """Places of an experiment's problems that have the repeat `first`, by name, with those of their
@@ -97,7 +97,7 @@ def _problems_met(
     return met
 
 
-def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
+def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range:
     """Numbers of the chunks that contain a method's repeats in an experiment at a scale, under the
     condition with the most: one of a method that draws no random numbers.
     """
@@ -112,21 +112,23 @@ def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
     return range(-(-repeats // content.chunk[scale]))
 
 
-def chunks_of(study: Study, experiment: str, methods: Iterable[str], scale: str) -> dict[str, int]:
+def count_chunks(
+    study: Study, experiment: str, methods: Iterable[str], scale: str
+) -> dict[str, int]:
     """Number of chunks of each of some methods."""
-    return {method: len(chunks(study, experiment, method, scale)) for method in methods}
+    return {method: len(list_chunks(study, experiment, method, scale)) for method in methods}
 
 
-def runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> Runs:
+def build_runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> Runs:
     """A chunk of runs."""
-    return Runs(job(study, experiment, method, scale, int(chunk)))
+    return Runs(build_chunk(study, experiment, method, scale, int(chunk)))
 
 
-def judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck:
+def build_judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck:
     """All chunks of the scale."""
-    numbers = chunks(study, experiment, method, scale)
+    numbers = list_chunks(study, experiment, method, scale)
     return Recheck(
-        [job(study, experiment, method, scale, number) for number in numbers],
+        [build_chunk(study, experiment, method, scale, number) for number in numbers],
         shows={experiment: {method: len(numbers)}},
     )
 
@@ -135,13 +137,13 @@ def judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck
 # Tables and figures
 
 
-def _parts(artefact: TableEntry | Figure) -> list[Any]:
+def _list_parts(artefact: TableEntry | Figure) -> list[Any]:
     """What of a table or figure shows runs: the table, or some panels."""
     parts = getattr(artefact, "panels", [artefact])
     return [part for part in parts if getattr(part, "experiment", None)]
 
 
-def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
+def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
     """By experiment, the methods whose runs an artefact needs: for a table of the paper's form
     those it selects, for another all (the comparison shows them), for a figure those it selects,
     including baselines if named.
@@ -149,34 +151,34 @@ def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
     if spec := study.compared().get(artefact):
         methods = study.methods_of(spec.experiment)
         if spec.printed:
-            methods = one_or_list(
+            methods = convert_to_list(
                 spec.where.get("method", study.own_methods(spec.experiment, artefact))
             )
         return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
-    for panel in _parts(study.artefact(artefact)):
+    for panel in _list_parts(study.artefact(artefact)):
         methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))
-        needed.setdefault(panel.experiment, set()).update(one_or_list(methods))
+        needed.setdefault(panel.experiment, set()).update(convert_to_list(methods))
     return {
         name: [method for method in study.methods_of(name) if method in shown]
         for name, shown in needed.items()
     }
 
 
-def shown_by(study: Study, artefact: str, scale: str) -> Shows:
+def find_results(study: Study, artefact: str, scale: str) -> Shows:
     """The results that a table or figure shows."""
     return {
-        name: chunks_of(study, name, methods, scale)
-        for name, methods in methods_of_artefact(study, artefact).items()
+        name: count_chunks(study, name, methods, scale)
+        for name, methods in list_methods(study, artefact).items()
     }
 
 
-def looks(study: Study) -> dict[str, str]:
+def choose_looks(study: Study) -> dict[str, str]:
     """Method -> the name of its look in every figure."""
     return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
 
 
-def labels_of(study: Study, artefact: str) -> dict[str, str]:
+def build_labels(study: Study, artefact: str) -> dict[str, str]:
     """Labels, except those of methods, problems and workspaces that a table or figure does not
     show.
     """
@@ -186,9 +188,9 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
-    for part in _parts(spec):
+    for part in _list_parts(spec):
         content = study.experiments[part.experiment]
-        shown |= {*one_or_list(part.where.get("method", content.methods)), *content.problems}
+        shown |= {*convert_to_list(part.where.get("method", content.methods)), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
         for problem in (study.problems[each] for each in content.problems):
             shown |= {problem.workspace, problem.route}
@@ -196,7 +198,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     return {name: label for name, label in study.labels.items() if name not in hidden} | printed
 
 
-def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
+def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     """The table of a name."""
     spec = study.whole(table)
     experiment = study.experiments[spec.experiment]
@@ -210,7 +212,7 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
         spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
-        labels=labels_of(study, table),
+        labels=build_labels(study, table),
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
         reconstructed=study.reconstructed(spec),
@@ -218,12 +220,12 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
         sources=[file] if file else [],
-        shows=shown_by(study, table, scale),
+        shows=find_results(study, table, scale),
         code=study.code_for("metrics"),
     )
 
 
-def table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns:
+def build_table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns:
     """The table of a name."""
     spec = study.tables[table].but(title=table)
     code = study.code_for("functions") if spec.kind == "function" else []
@@ -231,20 +233,20 @@ def table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns
     return TableWithoutRuns(spec, sources=[file] if file else study.published_files(), code=code)
 
 
-def latex(study: Study, scale: str, table: str) -> Latex:
+def build_latex(study: Study, scale: str, table: str) -> Latex:
     """The table of a name."""
     spec, printed = study.tables[table], study.with_published().get(table)
     heads = len(printed.index) if printed else 0
-    return Latex(f"{study.key}-{table}", caption(study, table, scale), spec.note, heads)
+    return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
 
 
-def figure(study: Study, scale: str, figure: str) -> FigureFiles:
+def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     """The figure of a name."""
-    spec, behind = study.figures[figure], methods_of_artefact(study, figure)
+    spec, behind = study.figures[figure], list_methods(study, figure)
     methods = {method for name in behind for method in study.methods_of(name)}
     homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
     every = study.every_problem() if spec.problems else {}
-    problems = descriptions(study, {name: every[name] for name in spec.problems})
+    problems = build_descriptions(study, {name: every[name] for name in spec.problems})
     homes += problems.workspaces
     return FigureFiles(
         study=study.key,
@@ -252,35 +254,37 @@ def figure(study: Study, scale: str, figure: str) -> FigureFiles:
         width=spec.width,
         panels=spec.panels,
         layout=study.layout.get(figure),
-        labels=labels_of(study, figure),
+        labels=build_labels(study, figure),
         looks={
-            name: look for name, look in looks(study).items() if spec.names_any or name in methods
+            name: look
+            for name, look in choose_looks(study).items()
+            if spec.names_any or name in methods
         },
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
         problems=problems,
         repeats={name: study.experiments[name].repeats[scale] for name in behind},
         chunks={
-            name: {method: job(study, name, method, scale, 0) for method in behind[name]}
+            name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
             for name in spec.rerun
         },
         unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
         folder=shorten_path(study.folder),
-        alternatives=_every_alternative(study) if spec.claims else [],
+        alternatives=_list_alternatives(study) if spec.claims else [],
         sources=[
             *study.maps([*spec.workspaces, *problems.workspaces]),
             *(file for file in study.published_files() if spec.draws(Path(file).stem)),
         ],
-        shows=shown_by(study, figure, scale),
+        shows=find_results(study, figure, scale),
         code=study.code_for(*spec.code),
     )
 
 
-def _every_alternative(study: Study) -> list[dict[str, str]]:
+def _list_alternatives(study: Study) -> list[dict[str, str]]:
     """Return what the default and each single alternative is: assumption, its detail, value."""
     details = {each.id: each.detail for each in study.assumptions}
     default = alternatives.DEFAULT
     rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
-    for own in alternatives.single_alternatives(study).values():
+    for own in alternatives.build_single_alternatives(study).values():
         rows += [
             {"assumption": name, "detail": details[name], "value": str(value)}
             for name, value in own.values.items()
@@ -288,28 +292,28 @@ def _every_alternative(study: Study) -> list[dict[str, str]]:
     return rows
 
 
-def caption(study: Study, artefact: str, scale: str) -> str:
+def build_caption(study: Study, artefact: str, scale: str) -> str:
     """The caption of a table or figure: title, what the paper says of its own, and the runs behind
     it. The page has the settings of each method, and the verdicts of claims.
     """
     title = study.artefact(artefact).title
-    words = says(study, artefact)
-    parts = [title, words and f"In print: {words}", behind(study, artefact, scale)]
+    words = quote_paper(study, artefact)
+    parts = [title, words and f"In print: {words}", find_runs_behind(study, artefact, scale)]
     return ". ".join(filter(None, parts)) + "."
 
 
-def says(study: Study, artefact: str) -> str:
+def quote_paper(study: Study, artefact: str) -> str:
     """What the paper says of its table or figure."""
     return study.layout[artefact].says if artefact in study.layout else ""
 
 
-def behind(study: Study, artefact: str, scale: str) -> str:
+def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
     """The runs of each method behind a table or figure."""
-    parts, told = _parts(study.artefact(artefact)), []
-    for experiment in methods_of_artefact(study, artefact):
+    parts, told = _list_parts(study.artefact(artefact)), []
+    for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]
-        listed = max(len(one_or_list(where.get("repeat", []))) for where in own)
+        listed = max(len(convert_to_list(where.get("repeat", []))) for where in own)
         repeats = listed or content.repeats[scale]
         drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
         layouts = max(each[scale] for each in drawn)
@@ -333,27 +337,27 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
     """Return whether an experiment has the same problems in a study under other values of its
     assumptions and by default, and a method the same runs.
     """
-    own, other = (problems_job(each, experiment, scale).workspaces for each in (study, default))
+    own, other = (
+        build_problems_job(each, experiment, scale).workspaces for each in (study, default)
+    )
     if any(other[name] != home for name, home in own.items()):
         return False
     if not method:
         return True
-    made, known = (job(each, experiment, method, scale, 0) for each in (study, default))
+    made, known = (build_chunk(each, experiment, method, scale, 0) for each in (study, default))
     places = all(known.problems[name] == place for name, place in made.problems.items())
     return places and made.settings == known.settings
 
 
-def claims(study: Study, scale: str) -> Claims:
+def build_claims(study: Study, scale: str) -> Claims:
     """The claims of a study."""
     claims = [claim for claim in study.claims if claim.scale in (None, scale)]
-    experiments = {
-        name: study.experiments[name] for name in alternatives.experiments_of_claims(claims)
-    }
+    experiments = {name: study.experiments[name] for name in alternatives.list_experiments(claims)}
     return Claims(
         StudyForClaims(
             study.key,
             claims,
-            {name: _shown(each) for name, each in (study.tables | study.figures).items()},
+            {name: _describe_runs(each) for name, each in (study.tables | study.figures).items()},
             study.variants(),
             {name: experiment.paired for name, experiment in experiments.items()},
             {name: experiment.repeats["full"] for name, experiment in experiments.items()},
@@ -361,28 +365,28 @@ def claims(study: Study, scale: str) -> Claims:
         ),
         {name: experiment.repeats[scale] for name, experiment in experiments.items()},
         {
-            each.name: alternatives.meaning(study, each.values)
+            each.name: alternatives.describe_values(study, each.values)
             for each in study.readings
             if scale == JUDGED_AT and not study.values
         },
         sources=study.published_files(),
         code=study.code_for("metrics", "functions"),
         shows={
-            name: chunks_of(study, name, experiment.methods, scale)
+            name: count_chunks(study, name, experiment.methods, scale)
             for name, experiment in experiments.items()
         },
     )
 
 
-def _shown(artefact: TableEntry | Figure) -> list[Display]:
+def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
     """What a table or figure shows of runs."""
     return [
-        Display(**{name: each for name, each in part.plain().items() if name in keys(Display)})
-        for part in _parts(artefact)
+        Display(**{name: each for name, each in part.plain().items() if name in list_keys(Display)})
+        for part in _list_parts(artefact)
     ]
 
 
-def audit(study: Study, scale: str) -> Audit:
+def build_audit(study: Study, scale: str) -> Audit:
     """The audit of a study."""
     tables = {
         Path(each.published).stem: each.but(title=name, note=None, labels={})
@@ -402,38 +406,38 @@ def audit(study: Study, scale: str) -> Audit:
 # All studies together
 
 
-def worth(studies: Studies, scale: str) -> BaselineTable:
+def build_worth(studies: Studies, scale: str) -> BaselineTable:
     """The studies that have a generic optimiser beside their methods; with all baselines."""
-    return baseline_comparison(studies, scale, with_baselines=True)
+    return build_baseline_comparison(studies, scale, with_baselines=True)
 
 
-def baseline_comparison(
+def build_baseline_comparison(
     studies: Studies, scale: str, with_baselines: bool = False
 ) -> BaselineTable:
     """The methods of studies beside the baseline that these name, if they do. with_baselines:
-    `worth`.
+    `build_worth`.
     """
     baselines, repeats, shows = {}, {}, {}
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
-        for name in one_or_list(beside.worth or []) if with_baselines else beside.experiments:
+        for name in convert_to_list(beside.worth or []) if with_baselines else beside.experiments:
             baselines[key] = (beside.baseline, beside.proposed)
             methods = [*study.experiments[name].methods, beside.baseline]
             if with_baselines:
                 methods = study.methods_of(name)
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
-            shows[f"{key}/{name}"] = chunks_of(study, name, methods, scale)
+            shows[f"{key}/{name}"] = count_chunks(study, name, methods, scale)
     return BaselineTable(baselines, repeats, with_baselines, shows=shows)
 
 
-def summary(studies: Studies, scale: str) -> Summary:
+def build_summary(studies: Studies, scale: str) -> Summary:
     """All studies."""
     tables = [(key, name) for key, content in studies.items() for name in content.with_published()]
     code = [module for content in studies.values() for module in content.code_for("metrics")]
     return Summary(tables, code=code)
 
 
-def verdict(study: Study, scale: str) -> VerdictText:
+def build_verdict(study: Study, scale: str) -> VerdictText:
     """That of a study."""
     return VerdictText(study.key, study.labels, sources=[study.verdict_file()])

@@ -16,7 +16,7 @@ from bezierplan.machine.digest import compute_content_digest, name_module, read_
 from bezierplan.places import STUDIES
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
-from bezierplan.study.alternatives import default_of
+from bezierplan.study.alternatives import find_default
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
 
@@ -25,7 +25,7 @@ _LONG = 80
 """Characters of a value that stand where settings are compared."""
 
 
-def shown_of(study: Study, scale: str, root: str = RESULTS) -> list[str]:
+def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
     """Names of the tables and figures of a study that the page shows: those of the paper, and of
     the others what there is; at scale extended all.
 
@@ -44,13 +44,15 @@ def shown_of(study: Study, scale: str, root: str = RESULTS) -> list[str]:
     )
 
 
-def shows(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
+def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
     """The results behind all tables, figures and claims that the page shows."""
     behind: Shows = {}
     for key, study in studies.items():
-        parts = [jobs.shown_by(study, name, scale) for name in shown_of(study, scale, root)]
+        parts = [
+            jobs.find_results(study, name, scale) for name in list_artefacts(study, scale, root)
+        ]
         if study.claims:
-            parts.append(jobs.claims(study, scale).shows)
+            parts.append(jobs.build_claims(study, scale).shows)
         for part in parts:
             for name, methods in part.items():
                 place = f"{key}/{name}"
@@ -58,10 +60,10 @@ def shows(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
     return behind
 
 
-def page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
+def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     """The page of a scale."""
-    behind, outcome = shows(studies, scale, root), any(map(_of_project, studies.values()))
-    shown = {key: _study(own, scale, root) for key, own in studies.items()}
+    behind, outcome = find_results(studies, scale, root), any(map(_is_of_project, studies.values()))
+    shown = {key: _describe_study(own, scale, root) for key, own in studies.items()}
     return Page(
         PageJob(scale, shown, outcome=outcome and scale != "extended"),
         sources=files(),
@@ -70,20 +72,20 @@ def page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     )
 
 
-def _of_project(study: Study) -> bool:
+def _is_of_project(study: Study) -> bool:
     return study.folder.resolve().is_relative_to(STUDIES)
 
 
-def _study(study: Study, scale: str, root: str) -> StudyView:
+def _describe_study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
     artefacts = {
         name: ArtefactView(
             study.artefact(name).title,
-            jobs.behind(study, name, scale),
-            jobs.says(study, name),
+            jobs.find_runs_behind(study, name, scale),
+            jobs.quote_paper(study, name),
             study.whole(name) if name in study.tables else None,
         )
-        for name in shown_of(study, scale, root)
+        for name in list_artefacts(study, scale, root)
     }
     return StudyView(
         title=study.title,
@@ -98,17 +100,17 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             for name in study.methods
         },
         claims={claim.id: claim for claim in study.claims},
-        repeats=_repeats(study, scale),
+        repeats=_count_repeats(study, scale),
         tables={name: each for name, each in artefacts.items() if name in study.tables},
         figures={name: each for name, each in artefacts.items() if name in study.figures},
         assumptions=[
-            dict(each) | {"default": default_of(study, each)} for each in study.assumptions
+            dict(each) | {"default": find_default(study, each)} for each in study.assumptions
         ],
         files=[
             *(("claims", "checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
-        changes=changes(study.key, settings_of(study)) if _of_project(study) else [],
+        changes=changes(study.key, list_settings(study)) if _is_of_project(study) else [],
         experiments={
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
@@ -116,7 +118,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
     )
 
 
-def settings_of(study: Study) -> list[tuple[str, str, str]]:
+def list_settings(study: Study) -> list[tuple[str, str, str]]:
     """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
     settings = {method: study.resolved(method) for method in study.methods}
     for name, workspace in study.workspaces.items():
@@ -130,13 +132,13 @@ def settings_of(study: Study) -> list[tuple[str, str, str]]:
     settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
     settings["presets"] = study.presets
     return [
-        (owner, setting, _short(str(value)))
+        (owner, setting, _shorten(str(value)))
         for owner, own in settings.items()
         for setting, value in own.items()
     ]
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     """A text, of a long one a digest."""
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
@@ -147,7 +149,7 @@ def has_audit(study: Study) -> bool:
     return bool(study.claims or study.with_published())
 
 
-def _repeats(study: Study, scale: str) -> list[int]:
+def _count_repeats(study: Study, scale: str) -> list[int]:
     """The least and the largest number of runs of a method under a condition."""
     counts = []
     for experiment in study.experiments.values():

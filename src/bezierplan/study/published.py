@@ -14,7 +14,7 @@ from typing import Any
 from bezierplan.analysis import metrics
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.places import shorten_path
-from bezierplan.schema.checked import Fault, check_all, check_known, text_of
+from bezierplan.schema.checked import Fault, check_all, check_known, read_text
 from bezierplan.schema.model import is_number
 from bezierplan.study.definition import Study
 from bezierplan.study.design import Design
@@ -31,7 +31,7 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     names. Raises Fault, with file and line.
     """
     location = shorten_path(file)
-    reader = csv.DictReader(io.StringIO(text_of(file, location), newline=""), strict=True)
+    reader = csv.DictReader(io.StringIO(read_text(file, location), newline=""), strict=True)
     lines = {}
     try:
         for row in reader:

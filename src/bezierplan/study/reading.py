@@ -18,9 +18,9 @@ import pydantic
 from bezierplan.machine.modules import find_code
 from bezierplan.places import PACKAGE, STUDIES, TREE, find_cache_folder, shorten_path
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, check_all, closest
-from bezierplan.schema.model import Model, named, parsed, sound_part
-from bezierplan.schema.words import told
+from bezierplan.schema.checked import Fault, check_all, suggest_closest
+from bezierplan.schema.model import Model, find_names, parse, parse_sound_part
+from bezierplan.schema.words import describe_in_one_line
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study
@@ -30,7 +30,7 @@ Folders = dict[Path, dict[str, Any]]
 """Folders of studies, with the settings that take the place of a study's own."""
 
 
-def config_file() -> Path:
+def find_config_file() -> Path:
     """The file that names the studies to run: the working folder's, or the project's."""
     own = Path("config", "config.yaml")
     return own if own.is_file() else TREE / own
@@ -39,8 +39,8 @@ def config_file() -> Path:
 def read_config(config: Mapping[str, Any]) -> Folders:
     """The studies that a configuration names. Raises Fault."""
     location = "config/config.yaml or --config"
-    settings = _with_values(config.get("settings", {}))
-    content = parsed(ConfigFile, {**config, "settings": settings}, location)
+    settings = _convert_values(config.get("settings", {}))
+    content = parse(ConfigFile, {**config, "settings": settings}, location)
     folders: Folders = {}
     for name in content.studies:
         folder = STUDIES / name if "/" not in name else Path(name)
@@ -48,7 +48,7 @@ def read_config(config: Mapping[str, Any]) -> Folders:
             known = [location.parent.name for location in STUDIES.glob("*/experiments.yaml")]
             raise Fault(
                 f"{location}: studies: {name}: no experiments.yaml in "
-                f"{shorten_path(folder)}{closest(name, known)}"
+                f"{shorten_path(folder)}{suggest_closest(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
     known = [folder.resolve().name for folder in (*folders, *STUDIES.glob("*"))]
@@ -56,7 +56,7 @@ def read_config(config: Mapping[str, Any]) -> Folders:
     return folders
 
 
-def on_page(scale_folder: str | Path) -> dict[str, str]:
+def read_page_studies(scale_folder: str | Path) -> dict[str, str]:
     """Return the studies that the page in the folder of a scale shows, by name, each with the word
     that names it in a configuration, as far as it has results; none without such a page.
     """
@@ -80,7 +80,7 @@ def load_others(words: Mapping[str, str], config: Mapping[str, Any]) -> dict[str
     return studies
 
 
-def asked(folders: Folders, targets: Iterable[str]) -> Folders:
+def select_studies(folders: Folders, targets: Iterable[str]) -> Folders:
     """The studies that targets of the workflow belong to; all, unless each target is a study, or a
     rule or a file of one.
     """
@@ -95,12 +95,12 @@ def asked(folders: Folders, targets: Iterable[str]) -> Folders:
     return {folder: folders[folder] for folder in folders if folder in wanted or not wanted}
 
 
-def _with_values(settings: Any) -> Any:
+def _convert_values(settings: Any) -> Any:
     """Settings of a configuration, which are numbers where they look like it: Snakemake reads those
     of the command line as text.
     """
     if isinstance(settings, dict):
-        return {name: _with_values(each) for name, each in settings.items()}
+        return {name: _convert_values(each) for name, each in settings.items()}
     return checked.parse(settings, "--config") if isinstance(settings, str) else settings
 
 
@@ -120,7 +120,7 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     studies: dict[str, Study] = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
-        stamp = _stamp(folder, changed)
+        stamp = _find_stamp(folder, changed)
         known = stamp.exists()
         if not known:
             _load_code(folder)
@@ -144,12 +144,17 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     return studies
 
 
-def _stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
+def _find_stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
     """The file that says of a study that it was checked and had no fault. Its name is a digest of
     all that a fault could come from: the files of the study, the settings of a configuration, this
     package and its libraries.
     """
-    parts = [repr(changes), *_package(), str(folder.resolve()), *_contents(folder)]
+    parts = [
+        repr(changes),
+        *_describe_package(),
+        str(folder.resolve()),
+        *_describe_contents(folder),
+    ]
     return (
         find_cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
     )
@@ -160,13 +165,17 @@ _WRITTEN = frozenset(("__pycache__", "results", ".snakemake"))
 
 
 @cache
-def _package() -> list[str]:
+def _describe_package() -> list[str]:
     """The contents of this package, Python, and when a library beside pydantic came or went."""
     libraries = Path(pydantic.__file__).parents[1]
-    return [sys.version, f"{libraries} {libraries.stat().st_mtime_ns}", *_contents(PACKAGE)]
+    return [
+        sys.version,
+        f"{libraries} {libraries.stat().st_mtime_ns}",
+        *_describe_contents(PACKAGE),
+    ]
 
 
-def _contents(folder: Path) -> list[str]:
+def _describe_contents(folder: Path) -> list[str]:
     """All below a folder, but for what is written there: names, where links lead, and digests of
     files.
     """
@@ -196,7 +205,7 @@ def _load_code(folder: Path) -> None:
         try:
             study_code.functions([name])
         except (Exception, SystemExit) as error:  # a user's file can fail in any way
-            raise Fault(f"{name}: {told(error)}") from None
+            raise Fault(f"{name}: {describe_in_one_line(error)}") from None
 
 
 def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
@@ -212,7 +221,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
         try:
             if name == "experiments" or file.exists():
                 text = checked.read(file, shorten_path(file))
-                sound, lines, left = sound_part(model, text, shorten_path(file))
+                sound, lines, left = parse_sound_part(model, text, shorten_path(file))
                 content |= dict(sound)
                 faults += lines
                 invalid += left
@@ -220,7 +229,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             broken += fault.lines
     if broken:  # What others say of such a file's names would follow from it.
         raise Fault(*broken, *faults)
-    if not faults and (strange := _strange(folder, content["workspaces"])):
+    if not faults and (strange := _find_strange_files(folder, content["workspaces"])):
         raise Fault(*strange)
     for name, value in changes.items():
         own = content["settings"].get(name)
@@ -230,12 +239,14 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     return Study.of(folder, content), faults, invalid
 
 
-def _strange(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
+def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
     """Faults of YAML files that nothing reads: their names may be misspelt."""
     known = [*(f"{name}.yaml" for name in FILES), "verdict.yaml"]
-    maps = [name for home in workspaces.values() for _, what, name in named(home) if what == "file"]
+    maps = [
+        name for home in workspaces.values() for _, what, name in find_names(home) if what == "file"
+    ]
     return [
-        f"{shorten_path(file)}: no file of a study{closest(file.name, known)}"
+        f"{shorten_path(file)}: no file of a study{suggest_closest(file.name, known)}"
         for file in sorted(each for each in folder.glob("*.y*ml*") if each.suffix != ".yaml~")
         if file.name not in (*known, *maps)
     ]

@@ -9,8 +9,8 @@ from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
-from bezierplan.study.experiments import Experiments, problems_job
-from bezierplan.study.jobs import job
+from bezierplan.study.experiments import Experiments, build_problems_job
+from bezierplan.study.jobs import build_chunk
 
 
 def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
@@ -31,7 +31,7 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
     check_known(experiment, study.experiments, f"{name}: experiment")
     check_known(method, study.methods_of(experiment), f"{name}: method")
     # Neither the seed nor the settings of a run depend on scale or chunk.
-    chunk = job(study, experiment, method, "full", 0)
+    chunk = build_chunk(study, experiment, method, "full", 0)
     conditions = {each.name: each for each in chunk.conditions()}
     check_known(condition_name, conditions, f"{name}: condition")
     condition = conditions[condition_name]
@@ -39,14 +39,18 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
     try:
-        return _again(chunk, condition, int(repeat), study)
+        return _run_again(chunk, condition, int(repeat), study)
     except PlannerFailure as error:
         raise Fault(str(error)) from None
 
 
-def _again(chunk: Chunk, condition: Condition, repeat: int, study: Experiments) -> results.Results:
+def _run_again(
+    chunk: Chunk, condition: Condition, repeat: int, study: Experiments
+) -> results.Results:
     """A run, or a drive in a world that moves."""
-    made, moving = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
+    made, moving = problems.build_all(
+        build_problems_job(study, chunk.experiment, "full"), study.folder
+    )
     name = condition.problem
     named, met = {name: made[name]}, {name: moving[name]} if moving else {}
     table = pd.DataFrame(execution.make_rows_again(chunk, [(condition, repeat)], named, met))

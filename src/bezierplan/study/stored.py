@@ -25,19 +25,19 @@ READINGS, ALTERNATIVES = "readings", "alternatives"
 """Folders in the results of a study, of those of the study under other values."""
 
 
-def places(studies: Studies) -> Studies:
+def list_places(studies: Studies) -> Studies:
     """Return studies, also under other values of their assumptions, by the place of results."""
     found = dict(studies)
     for key, study in studies.items():
         for folder, under in (
-            (READINGS, alternatives.joint_readings(study)),
-            (ALTERNATIVES, alternatives.single_alternatives(study)),
+            (READINGS, alternatives.build_joint_readings(study)),
+            (ALTERNATIVES, alternatives.build_single_alternatives(study)),
         ):
             found |= {f"{key}/{folder}/{name}": own for name, own in under.items()}
     return found
 
 
-def home(places: Studies, place: str, scale: str, experiment: str, method: str = "") -> str:
+def find_home(places: Studies, place: str, scale: str, experiment: str, method: str = "") -> str:
     """Return where the problems of an experiment are, or the runs of a method, for the study at a
     place. What a reading does not change, it shares with the study; what an alternative does not,
     with the default among the alternatives, which has as few runs.
@@ -50,74 +50,81 @@ def home(places: Studies, place: str, scale: str, experiment: str, method: str =
     return default if shared else place
 
 
-def made(
+def yield_jobs(
     places: Studies, scale: str, below: Collection[str], root: str = page.RESULTS
 ) -> Iterator[Made]:
     """Yield what the workflow can make at a scale. below: places of studies under other values that
-    count. root: as for `page.shown_of`.
+    count. root: as for `page.list_artefacts`.
     """
     studies = {place: study for place, study in places.items() if place == study.key}
     for place, study in places.items():
         if place in studies:
-            parts = chain(_results(places, place, scale, study.experiments), _shown(study, scale))
+            parts = chain(
+                _yield_results(places, place, scale, study.experiments),
+                _yield_artefacts(study, scale),
+            )
         elif place in below:
-            behind = alternatives.experiments_of_claims(study.claims)
-            claims = jobs.claims(study, scale), ["claims.csv", "claim_checks.csv"]
-            parts = chain(_results(places, place, scale, behind), [claims])
+            behind = alternatives.list_experiments(study.claims)
+            claims = jobs.build_claims(study, scale), ["claims.csv", "claim_checks.csv"]
+            parts = chain(_yield_results(places, place, scale, behind), [claims])
         else:
             continue
         yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
-    yield jobs.baseline_comparison(studies, scale), ["baseline_comparison.csv"]
-    yield jobs.worth(studies, scale), ["worth.csv"]
-    yield jobs.summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
-    yield page.page(studies, scale, root), [PAGE]
+    yield jobs.build_baseline_comparison(studies, scale), ["baseline_comparison.csv"]
+    yield jobs.build_worth(studies, scale), ["worth.csv"]
+    yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
+    yield page.build_page(studies, scale, root), [PAGE]
 
 
-def _results(places: Studies, place: str, scale: str, experiments: Iterable[str]) -> Iterator[Made]:
+def _yield_results(
+    places: Studies, place: str, scale: str, experiments: Iterable[str]
+) -> Iterator[Made]:
     """Yield problems and runs of experiments that are made at a place, with files in its folder."""
     study = places[place]
     for name in experiments:
-        if home(places, place, scale, name) == place:
-            yield jobs.problems(study, scale, name), [f"problems/{name}.parquet"]
-            yield jobs.bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
+        if find_home(places, place, scale, name) == place:
+            yield jobs.build_problems(study, scale, name), [f"problems/{name}.parquet"]
+            yield jobs.build_bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
         for method in study.methods_of(name):
-            if home(places, place, scale, name, method) != place:
+            if find_home(places, place, scale, name, method) != place:
                 continue
             folder = f"runs/{name}/{method}"
             ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
-            for number in jobs.chunks(study, name, method, scale):
+            for number in jobs.list_chunks(study, name, method, scale):
                 files = [f"{folder}/{number}{end}.parquet" for end in ends]
-                yield jobs.runs(study, scale, name, method, str(number)), files
-            yield jobs.judgement(study, scale, name, method), [f"{folder}/judgement.json"]
+                yield jobs.build_runs(study, scale, name, method, str(number)), files
+            yield jobs.build_judgement(study, scale, name, method), [f"{folder}/judgement.json"]
 
 
-def _shown(study: Study, scale: str) -> Iterator[Made]:
+def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
     """Yield what shows the runs of a study, with files in its folder."""
     for table in study.tables:
         csv, tex, *others = study.files_of(table)
         of_runs = table in study.compared()
-        make = jobs.table_of_runs if of_runs else jobs.table_without_runs
+        make = jobs.build_table_of_runs if of_runs else jobs.build_table_without_runs
         yield make(study, scale, table), [csv, *others]
-        yield jobs.latex(study, scale, table), [tex]
+        yield jobs.build_latex(study, scale, table), [tex]
     for figure in study.figures:
-        yield jobs.figure(study, scale, figure), study.files_of(figure)
+        yield jobs.build_figure(study, scale, figure), study.files_of(figure)
     if study.claims:
         files = ["claims.csv", "claim_checks.csv", "claims_by_reading.csv"]
-        yield jobs.claims(study, scale), files
+        yield jobs.build_claims(study, scale), files
     if page.has_audit(study):
-        yield jobs.audit(study, scale), ["audit.csv"]
+        yield jobs.build_audit(study, scale), ["audit.csv"]
     if study.verdict_file():
-        yield jobs.verdict(study, scale), ["verdict.md"]
+        yield jobs.build_verdict(study, scale), ["verdict.md"]
 
 
-def verified(places: Studies, scale: str, root: str, files: Collection[str]) -> Verification:
+def build_verification(
+    places: Studies, scale: str, root: str, files: Collection[str]
+) -> Verification:
     """Return the job that lists files of a scale, with the account of each, and that of the
     page.
     """
     below = {"/".join(file.split("/")[:3]) for file in files}
     accounts = [
         (own, job.key, job.account)
-        for job, own in made(places, scale, below, root)
+        for job, own in yield_jobs(places, scale, below, root)
         if own == [PAGE] or not {*own}.isdisjoint(files)
     ]
     words = {
@@ -128,7 +135,7 @@ def verified(places: Studies, scale: str, root: str, files: Collection[str]) -> 
     return Verification(f"{root}{scale}", words, accounts)
 
 
-def jobs_of(places: Studies, folder: Path, listed: Collection[str]) -> dict[str, Job]:
+def find_jobs(places: Studies, folder: Path, listed: Collection[str]) -> dict[str, Job]:
     """Return the job that makes each file of a scale. listed: the files of its list. What shows
     several studies shows those of these files.
     """
@@ -139,19 +146,19 @@ def jobs_of(places: Studies, folder: Path, listed: Collection[str]) -> dict[str,
     found = {
         file: job
         for studies in (places, shown)
-        for job, files in made(studies, scale, below, root)
+        for job, files in yield_jobs(studies, scale, below, root)
         for file in files
     }
-    return found | {LIST: verified(shown, scale, root, listed)}
+    return found | {LIST: build_verification(shown, scale, root, listed)}
 
 
-def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
+def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
     """Return where the studies lie whose results a scale's folder holds, by name: as a
     configuration, further words or the page say, or in the working folder. Raises Fault for one
     that is in none of these, for a folder of no scale, and FileNotFoundError without runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
-    on_page = reading.on_page(folder).items()
+    on_page = reading.read_page_studies(folder).items()
     known = {key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()} | named
     found = {problems.parent.name for problems in folder.glob("*/problems")}
     if not found:
@@ -169,7 +176,7 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
     return {key: word for key, word in known.items() if key in found}
 
 
-def strangers(folder: Path, known: Collection[str]) -> list[Path]:
+def find_strangers(folder: Path, known: Collection[str]) -> list[Path]:
     """Return the files of a scale, but for logs, that are none of those that its jobs make."""
     files = (file.relative_to(folder) for file in sorted(folder.rglob("*")) if file.is_file())
     return [

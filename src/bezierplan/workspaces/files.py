@@ -32,24 +32,24 @@ def sources(description: dict, folder: Path) -> list[Path]:
     """The files from which a workspace is read. Raises ValueError if they cannot be told from the
     description.
     """
-    from bezierplan.schema.model import named
+    from bezierplan.schema.model import find_names
     from bezierplan.workspaces.kinds import kind_of
 
     kind = kind_of(description)
     if hasattr(kind, "sources"):
         return kind.sources(description, folder)
-    names = named(kind.Options.model_validate(description))
+    names = find_names(kind.Options.model_validate(description))
     return [folder / name for _, what, name in names if what == "file"]
 
 
-def to_json(workspace: Workspace) -> str:
-    """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
+def write_json(workspace: Workspace) -> str:
+    """A workspace as text; `read_json` restores it bit by bit. A random field is stored as its
     circles, whatever the number of its cells.
     """
-    return json.dumps(_content(workspace) | {"unit": workspace.unit})
+    return json.dumps(_build_content(workspace) | {"unit": workspace.unit})
 
 
-def _content(workspace: Workspace) -> dict:
+def _build_content(workspace: Workspace) -> dict:
     if isinstance(workspace, Circles):
         table = np.column_stack([workspace.centres, workspace.radii]).tolist()
         content = {"kind": "circles", "bounds": workspace.bounds, "circles": table}
@@ -57,37 +57,37 @@ def _content(workspace: Workspace) -> dict:
         obstacles = [[ring.tolist() for ring in rings] for rings in workspace.obstacles]
         content = {"kind": "polygons", "bounds": workspace.bounds, "obstacles": obstacles}
     elif isinstance(workspace.shapes, Circles):
-        return _content(workspace.shapes) | {"kind": "random_field"}
+        return _build_content(workspace.shapes) | {"kind": "random_field"}
     else:
         cells = {"cell": workspace.cell, "rows": grid.to_lines(workspace)}
         if workspace.shapes or workspace.origin != (0.0, 0.0):
             cells["origin"] = workspace.origin
         if workspace.shapes:
-            return _content(workspace.shapes) | cells | {"kind": "raster"}
+            return _build_content(workspace.shapes) | cells | {"kind": "raster"}
         content = {"kind": "grid"} | cells
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
     if growth := workspace.growth:
         content["grown"] = {
             "radius": growth.radius,
-            "original": to_json(growth.original),
+            "original": write_json(growth.original),
             "centres": growth.centres.tolist(),
         }
     return content
 
 
-def _growth(content: dict) -> Growth | None:
+def _build_growth(content: dict) -> Growth | None:
     if "grown" not in content:
         return None
     known = content["grown"]
     centres = read_only(np.reshape(known["centres"], (-1, 2)), float)
-    return Growth(known["radius"], from_json(known["original"]), centres)
+    return Growth(known["radius"], read_json(known["original"]), centres)
 
 
-def from_json(text: str) -> Workspace:
-    """The workspace that `to_json` wrote."""
+def read_json(text: str) -> Workspace:
+    """The workspace that `write_json` wrote."""
     content = json.loads(text)
-    kind, unit, growth = content["kind"], content["unit"], _growth(content)
+    kind, unit, growth = content["kind"], content["unit"], _build_growth(content)
     if "circles" in content:
         table = np.reshape(content["circles"], (-1, 3))
         circles = Circles(tuple(content["bounds"]), table[:, :2], table[:, 2], unit, growth)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.schema.checked import closest
+from bezierplan.schema.checked import suggest_closest
 from bezierplan.workspaces.limits import (
     SMALLEST_ANGLE,
     SMALLEST_GAP,
@@ -26,7 +26,7 @@ from bezierplan.workspaces.limits import (
     check_numbers,
     check_thickness,
 )
-from bezierplan.workspaces.polygons import Polygons, cross, parts, rings_of
+from bezierplan.workspaces.polygons import Polygons, cross, list_parts, list_rings_of_polygon
 
 if TYPE_CHECKING:
     import shapely
@@ -47,7 +47,7 @@ class Shape(NamedTuple):
     polygon: "shapely.Polygon"
 
 
-def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
+def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
     """Polygons from the text of a GeoJSON file.
 
     margin: between obstacles and border, in units, of a file without a border of its own. Warns of
@@ -60,17 +60,17 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
     """
     import shapely
 
-    content = _content(text)
+    content = _read_content(text)
     shapes = [
         shape
-        for number, feature in enumerate(_features(content))
-        for shape in _shapes(number, feature)
+        for number, feature in enumerate(_list_features(content))
+        for shape in _read_shapes(number, feature)
     ]
     if shapes and "crs" not in content:
         _refuse_degrees(shapes)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
     borders = [shape for shape in shapes if shape.role == "border"]
-    limits, outside = _border(borders, obstacles, content.get("bbox"), margin)
+    limits, outside = _find_border(borders, obstacles, content.get("bbox"), margin)
     obstacles += outside
     frame = shapely.box(limits[0], limits[2], limits[1], limits[3])
     _check_gaps(obstacles, frame)
@@ -80,13 +80,13 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> 
             kept.append(shape.polygon)
         else:
             logger.warning("%s: beyond the border, and cut there", shape.name)
-            kept += parts(shape.polygon.intersection(frame))
-    return Polygons(limits, tuple(map(rings_of, kept)), unit)
+            kept += list_parts(shape.polygon.intersection(frame))
+    return Polygons(limits, tuple(map(list_rings_of_polygon, kept)), unit)
 
 
-def _content(text: str) -> dict[str, Any]:
+def _read_content(text: str) -> dict[str, Any]:
     try:
-        content = json.loads(text, object_pairs_hook=_object)
+        content = json.loads(text, object_pairs_hook=_read_object)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"not GeoJSON ({error})") from None
     if not isinstance(content, dict):
@@ -114,7 +114,7 @@ def _refuse_degrees(shapes: list[Shape]) -> None:
         )
 
 
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _read_object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object of a file. Raises ValueError for a key that is given twice: one would be lost."""
     content: dict[str, Any] = {}
     for key, entry in pairs:
@@ -124,7 +124,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return content
 
 
-def _features(content: dict[str, Any]) -> list[Any]:
+def _list_features(content: dict[str, Any]) -> list[Any]:
     """The features of a file, which may also be one feature or a bare geometry."""
     if "features" not in content:
         return [content if content.get("type") == "Feature" else {"geometry": content}]
@@ -133,7 +133,7 @@ def _features(content: dict[str, Any]) -> list[Any]:
     return content["features"]
 
 
-def _shapes(number: int, feature: Any) -> Iterator[Shape]:
+def _read_shapes(number: int, feature: Any) -> Iterator[Shape]:
     """The polygons of a feature; none for a role that is not part of a workspace."""
     import shapely
 
@@ -142,7 +142,8 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
     role = (feature.get("properties") or {}).get("role", "obstacle")
     if role not in ROLES:
         raise ValueError(
-            f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}"
+            f"feature {number}: properties: role: {role!r}: unknown"
+            f"{suggest_closest(str(role), ROLES)}"
         )
     name = f"feature {number} ({role})"
     if role not in ("border", "obstacle"):
@@ -169,7 +170,7 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
                 f"{name}: {shapely.is_valid_reason(polygon)}; expected a simple polygon"
             )
         check_thickness(shapely.minimum_clearance(polygon), f"{name}: thickness")
-        for ring in rings_of(shapely.remove_repeated_points(polygon)):
+        for ring in list_rings_of_polygon(shapely.remove_repeated_points(polygon)):
             ahead, back = np.roll(ring, -1, axis=0) - ring, np.roll(ring, 1, axis=0) - ring
             angles = np.abs(np.arctan2(cross(ahead, back), (ahead * back).sum(axis=1)))
             if angles.min() < SMALLEST_ANGLE:
@@ -191,7 +192,7 @@ def _check_rings(geometry: dict[str, Any], name: str) -> None:
             )
 
 
-def _border(
+def _find_border(
     borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None
 ) -> tuple[Bounds, list[Shape]]:
     """The bounds of a map, and as obstacles what lies within them and yet outside its border, which
@@ -222,7 +223,7 @@ def _border(
     return limits, [
         Shape(f"{border.name}: outside of it", "obstacle", part)
         for border in borders
-        for part in parts(shapely.box(*low, *high).difference(border.polygon))
+        for part in list_parts(shapely.box(*low, *high).difference(border.polygon))
         if not part.is_empty
     ]
 

@@ -48,19 +48,19 @@ class Ground(NamedTuple):
     energy: np.ndarray
 
 
-def ground_of(grid: Grid, friction: float, closed: bool = False) -> Ground:
+def build_ground(grid: Grid, friction: float, closed: bool = False) -> Ground:
     """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do
     not modify the result.
     """
-    return _ground(*_key(grid, friction, closed))
+    return _build_ground(*_build_key(grid, friction, closed))
 
 
-def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
-    """The energy of `cheapest` on the ground of a grid, cached."""
-    return _least_energy(_key(grid, friction, closed), start, target)
+def find_least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
+    """The energy of `find_cheapest` on the ground of a grid, cached."""
+    return _find_least_energy(_build_key(grid, friction, closed), start, target)
 
 
-def _key(grid: Grid, friction: float, closed: bool) -> tuple:
+def _build_key(grid: Grid, friction: float, closed: bool) -> tuple:
     """What determines the ground of a grid, so that it is built once per map."""
     heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
     return (
@@ -74,7 +74,7 @@ def _key(grid: Grid, friction: float, closed: bool) -> tuple:
 
 
 @lru_cache(maxsize=8)
-def _ground(
+def _build_ground(
     shape: tuple[int, int],
     occupied: bytes,
     heights: bytes,
@@ -89,60 +89,62 @@ def _ground(
     )
     if cells.size > table_cells:
         return bare
-    encounters, energy = _tables(bare)
+    encounters, energy = _build_tables(bare)
     return bare._replace(encounters=encounters, energy=energy)
 
 
 @compile_kernel
-def _tables(ground):
+def _build_tables(ground):
     cells = ground.occupied.size
     encounters, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
     # Back and forth an edge meets the same cells, but climbs differently.
     for one in range(cells):
         for other in range(one + 1):
-            encounters[one, other] = encounters[other, one] = obstacles_on(ground, one, other)
-            energy[one, other] = energy[other, one] = edge_energy(ground, one, other)
+            encounters[one, other] = encounters[other, one] = count_obstacles_on(ground, one, other)
+            energy[one, other] = energy[other, one] = compute_edge_energy(ground, one, other)
             if ground.heights.size:
-                energy[other, one] = edge_energy(ground, other, one)
+                energy[other, one] = compute_edge_energy(ground, other, one)
     return encounters, energy
 
 
 @compile_inline
-def obstacles_on(ground: Ground, start: int, end: int) -> int:
+def count_obstacles_on(ground: Ground, start: int, end: int) -> int:
     """Number of occupied cells that the edge between two cells meets, including the two (meledje,
     eq. 3: beta).
     """
     if ground.encounters.size:
         return int(ground.encounters[start, end])
-    return _passed(ground, start, end)[0]
+    return _measure_edge(ground, start, end)[0]
 
 
 @allocation_free
-def obstacles_along(path: np.ndarray, ground: Ground) -> int:
+def count_obstacles_along(path: np.ndarray, ground: Ground) -> int:
     """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for
     every edge that meets it.
     """
     encounters = 0
     for k in range(len(path) - 1):
-        encounters += obstacles_on(ground, path[k], path[k + 1])
+        encounters += count_obstacles_on(ground, path[k], path[k + 1])
     return encounters
 
 
 @compile_inline
-def edge_energy(ground: Ground, start: int, end: int) -> float:
+def compute_edge_energy(ground: Ground, start: int, end: int) -> float:
     """Cost of the edge from one cell to another: its length plus its climb divided by the friction
     (meledje, eq. 2: epsilon).
     """
     if ground.energy.size:
         return ground.energy[start, end]
-    length = distance(ground, start, end)
+    length = measure_distance(ground, start, end)
     return (
-        length + _passed(ground, start, end)[1] / ground.friction if ground.heights.size else length
+        length + _measure_edge(ground, start, end)[1] / ground.friction
+        if ground.heights.size
+        else length
     )
 
 
 @allocation_free
-def distance(ground: Ground, start: int, end: int) -> float:
+def measure_distance(ground: Ground, start: int, end: int) -> float:
     """Length of the edge between two cells."""
     columns = ground.occupied.shape[1]
     across, up = end % columns - start % columns, end // columns - start // columns
@@ -150,7 +152,7 @@ def distance(ground: Ground, start: int, end: int) -> float:
 
 
 @allocation_free
-def _passed(ground, start, end):
+def _measure_edge(ground, start, end):
     """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
     The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its
@@ -184,15 +186,15 @@ def _passed(ground, start, end):
 
 
 @lru_cache(maxsize=64)
-def _least_energy(key: tuple, start: int, target: int) -> float:
-    return cheapest(_ground(*key), start, target)[0]
+def _find_least_energy(key: tuple, start: int, target: int) -> float:
+    return find_cheapest(_build_ground(*key), start, target)[0]
 
 
-def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
+def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
     """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells;
     infinite and empty if there is no such path.
     """
-    energy, before = _cheapest(ground, start, target)
+    energy, before = _find_cheapest(ground, start, target)
     if math.isinf(energy):
         return energy, np.empty(0, dtype=np.int64)
     path = [target]
@@ -202,7 +204,7 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
 
 
 @compile_kernel
-def _cheapest(ground, start, target):
+def _find_cheapest(ground, start, target):
     """Minimum energy from start to target, and the cell before each cell on its way, by A* with the
     straight distance.
 
@@ -216,18 +218,18 @@ def _cheapest(ground, start, target):
     while True:
         here, least = -1, np.inf
         for cell in range(cells):
-            if not done[cell] and energy[cell] + distance(ground, cell, target) < least:
-                here, least = cell, energy[cell] + distance(ground, cell, target)
+            if not done[cell] and energy[cell] + measure_distance(ground, cell, target) < least:
+                here, least = cell, energy[cell] + measure_distance(ground, cell, target)
         if here < 0 or here == target:
             return energy[target], before
         done[here] = True
         for cell in range(cells):
             if (
                 not done[cell]
-                and energy[here] + distance(ground, here, cell) < energy[cell]
-                and obstacles_on(ground, here, cell) == 0
+                and energy[here] + measure_distance(ground, here, cell) < energy[cell]
+                and count_obstacles_on(ground, here, cell) == 0
             ):
-                through = energy[here] + edge_energy(ground, here, cell)
+                through = energy[here] + compute_edge_energy(ground, here, cell)
                 if through < energy[cell]:
                     energy[cell], before[cell] = through, here
 
@@ -238,7 +240,9 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 
 @allocation_free
-def free_neighbours(cell: int, ground: Ground, neighbourhood: int, neighbours: np.ndarray) -> int:
+def list_free_neighbours(
+    cell: int, ground: Ground, neighbourhood: int, neighbours: np.ndarray
+) -> int:
     """Write the free cells among the neighbours of a cell (`Neighbourhood`), row by row from the
     lower left, to `neighbours` (MOST_NEIGHBOURS,); returns their number.
     """

@@ -17,7 +17,7 @@ class Growth(NamedTuple):
     centres: np.ndarray
 
 
-def grown_of(workspace: Any) -> Growth | None:
+def find_growth(workspace: Any) -> Growth | None:
     """By how much a map has grown and from which; None for a map as it was given."""
     shapes = getattr(workspace, "shapes", None)
     return (shapes.growth if shapes else None) or workspace.growth
@@ -25,5 +25,5 @@ def grown_of(workspace: Any) -> Growth | None:
 
 def original(workspace: Any) -> Any:
     """The map before it grew."""
-    growth = grown_of(workspace)
+    growth = find_growth(workspace)
     return growth.original if growth else workspace

@@ -42,7 +42,7 @@ class Lattice(NamedTuple):
     ends: float
 
 
-def lattice(
+def build_grid_lattice(
     grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: str
 ) -> Lattice:
     """The lattice of a grid with the cells of start and target, both (x, y) in units.
@@ -66,8 +66,8 @@ def lattice(
     row, column = np.divmod(np.arange(rows * columns), columns)
     first, last = cells
     return Lattice(
-        neighbours(grid.occupied, corners),
-        _around(grid.occupied),
+        list_neighbours(grid.occupied, corners),
+        _list_free_cells_around(grid.occupied),
         grid.occupied.ravel(),
         row,
         column,
@@ -78,7 +78,7 @@ def lattice(
     )
 
 
-def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
+def list_neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
     """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed
     and from occupied cells.
 
@@ -94,12 +94,12 @@ def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
     reached = np.full((occupied.size, len(STEPS)), -1)
     free = np.flatnonzero(~occupied)
     reached[free] = np.where(
-        np.column_stack(beside) <= Corners[corners], _around(occupied)[free], -1
+        np.column_stack(beside) <= Corners[corners], _list_free_cells_around(occupied)[free], -1
     )
     return reached
 
 
-def _around(occupied: np.ndarray) -> np.ndarray:
+def _list_free_cells_around(occupied: np.ndarray) -> np.ndarray:
     """The free cells around each cell, free or occupied: (cells, 8) numbers, or -1 for none."""
     number = np.pad(
         np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)),
@@ -110,17 +110,17 @@ def _around(occupied: np.ndarray) -> np.ndarray:
     return np.column_stack([number[row + up, column + right] for up, right in STEPS])
 
 
-def distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray:
+def compute_distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray:
     """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
     neighbours, infinite where there is no path.
     """
     walls = np.pad(occupied, 1, constant_values=True)
-    return _distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
+    return _compute_distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
 
 
 @compile_kernel
-def _distances(walls, row, column, steps):
-    """Return the `distances` within a frame of occupied cells (Dijkstra)."""
+def _compute_distances(walls, row, column, steps):
+    """Return the `compute_distances` within a frame of occupied cells (Dijkstra)."""
     far = np.full(walls.shape, np.inf)
     far[row, column] = 0.0
     heap = [(0.0, row, column)]
@@ -137,7 +137,7 @@ def _distances(walls, row, column, steps):
     return far
 
 
-def points(
+def list_points(
     grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray
 ) -> np.ndarray:
     """Start, the centres of cells (n,), and target, in units: (n + 2, 2).

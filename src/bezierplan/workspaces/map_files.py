@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import fault_of
+from bezierplan.schema.model import describe_fault
 from bezierplan.workspaces import files, raster, robot
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.kinds import kinds
@@ -31,7 +31,7 @@ cell is given.
 """
 
 
-def described(
+def describe(
     file: Path, *, cells: bool = False, unit: str | None = None, **options: Any
 ) -> dict[str, Any]:
     """The description of a map file as a workspace of a study (config/README.md).
@@ -67,7 +67,7 @@ def described(
     try:
         kinds()[kind].model_validate(home | {"unit": "m", "file": "map"} | description)
     except ValidationError as error:
-        raise fault_of(error) from None
+        raise describe_fault(error) from None
     return home | description
 
 
@@ -79,14 +79,14 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     radius = robot_radius or 0.0
     robot.check_radius(radius)
     if description["kind"] != "raster":
-        return robot.grow(_loaded(file, description), radius)
+        return robot.grow(_load(file, description), radius)
     # It grows before it becomes cells.
-    polygons = robot.grow(_loaded(file, description | {"kind": "polygons"}), radius)
+    polygons = robot.grow(_load(file, description | {"kind": "polygons"}), radius)
     assert isinstance(polygons, Polygons)  # by its kind
     return raster.from_polygons(polygons, float(description["cell"]), description["rule"])
 
 
-def _loaded(file: Path, description: dict[str, Any]) -> Workspace:
+def _load(file: Path, description: dict[str, Any]) -> Workspace:
     """The map of a file. Raises ValueError, beginning with the option `margin` or with the file as
     it was given.
     """

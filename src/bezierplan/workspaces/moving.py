@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.workspaces.limits import Bounds, check_thickness
-from bezierplan.workspaces.random_field import random_centres
+from bezierplan.workspaces.random_field import draw_centres
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
@@ -42,6 +42,6 @@ def movement(
 
     Raises ValueError if no free place is found.
     """
-    centres = random_centres(rng, count, walls, ends, radius + description["clear_ends"])
+    centres = draw_centres(rng, count, walls, ends, radius + description["clear_ends"])
     heading = rng.uniform(0.0, 2 * np.pi, count)
     return centres, description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])

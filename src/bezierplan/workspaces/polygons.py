@@ -49,22 +49,22 @@ class Polygons:
         return shapely.box(left, bottom, right, top).difference(self.union())
 
 
-def parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
+def list_parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
     """The polygons of a shape, without points and lines at which others touch."""
     import shapely
 
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon)]
 
 
-def rings(shape: "shapely.Geometry") -> list[np.ndarray]:
+def list_rings(shape: "shapely.Geometry") -> list[np.ndarray]:
     """The boundary of a shape's polygons, not closed: rings (n, 2), the inside on their left."""
     import shapely
 
-    turned = map(shapely.geometry.polygon.orient, parts(shape))
-    return [ring for part in turned for ring in rings_of(part)]
+    turned = map(shapely.geometry.polygon.orient, list_parts(shape))
+    return [ring for part in turned for ring in list_rings_of_polygon(part)]
 
 
-def rings_of(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
+def list_rings_of_polygon(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
     """The rings (n, 2) of a polygon, the outer one first, each without its last position."""
     import shapely
 
@@ -73,7 +73,7 @@ def rings_of(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
     )
 
 
-def unit(vectors: np.ndarray) -> np.ndarray:
+def normalise(vectors: np.ndarray) -> np.ndarray:
     """Vectors (n, 2) of length 1."""
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 

@@ -45,12 +45,12 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     for _ in range(MOST_FIELDS):
         # Each draw of a nested field begins anew, however many numbers the last one took.
         draw = rng.spawn(1)[0] if nested else rng
-        centres = random_centres(
+        centres = draw_centres(
             draw, problem["obstacles"], square, ends, radius + description["clear_ends"]
         )
         radii = np.full(len(centres), radius)
         grid = from_circles(Circles(square, centres, radii, description["unit"]))
-        if connected(grid.occupied, *cells):
+        if is_connected(grid.occupied, *cells):
             return grid
     raise ValueError(
         f"radius: {description['radius']:g}: start and target are cut off from each other in "
@@ -75,7 +75,7 @@ def end_cells(grid: Grid, problem: dict) -> list[tuple[int, int]]:
     return cells
 
 
-def random_centres(
+def draw_centres(
     rng: np.random.Generator,
     count: int,
     bounds: Bounds,
@@ -108,7 +108,7 @@ def from_circles(circles: Circles) -> Grid:
     return Grid(occupied, 1.0, circles.unit, (-0.5, -0.5), circles)
 
 
-def connected(occupied: np.ndarray, start: tuple[int, int], target: tuple[int, int]) -> bool:
+def is_connected(occupied: np.ndarray, start: tuple[int, int], target: tuple[int, int]) -> bool:
     """Whether free cells lead from one cell (row, column) to another; a diagonal step may pass
     between two occupied cells.
     """

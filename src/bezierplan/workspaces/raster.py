@@ -63,7 +63,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
     return Grid(occupied, cell, polygons.unit, (left - 0.5 * cell, bottom - 0.5 * cell), polygons)
 
 
-def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
+def find_overlap(polygons: Polygons, grid: Grid) -> np.ndarray:
     """Which cells of a grid overlap an obstacle or the outside of the border of polygons: bool
     (rows, columns).
     """

@@ -21,9 +21,15 @@ from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import Growth, grown_of
+from bezierplan.workspaces.grown import Growth, find_growth
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, Bounds
-from bezierplan.workspaces.polygons import Polygons, cross, rings, rings_of, unit
+from bezierplan.workspaces.polygons import (
+    Polygons,
+    cross,
+    list_rings,
+    list_rings_of_polygon,
+    normalise,
+)
 
 if TYPE_CHECKING:
     import shapely
@@ -66,30 +72,30 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
     check_radius(radius)
     if radius == 0:
         return workspace
-    if before := grown_of(workspace):
+    if before := find_growth(workspace):
         raise ValueError(
             f"robot_radius: {radius:g}: "
             f"the map has grown by {before.radius:g} before; expected it once"
         )
     if isinstance(workspace, Circles):
-        bounds = _shrunk(workspace.bounds, radius)
+        bounds = _shrink(workspace.bounds, radius)
         growth = Growth(radius, workspace, workspace.centres)
         return replace(workspace, bounds=bounds, radii=workspace.radii + radius, growth=growth)
     shapes = workspace.shapes if isinstance(workspace, Grid) else workspace
     if isinstance(shapes, Polygons):
-        polygons = _polygons(workspace, _clean(shapes.union()), shapes.bounds, radius)
+        polygons = _grow_polygons(workspace, _clean(shapes.union()), shapes.bounds, radius)
         if isinstance(workspace, Polygons):
             return polygons
         return raster.from_polygons(polygons, workspace.cell, "overlap")
     assert isinstance(workspace, Grid)  # neither circles nor polygons
-    shape = _union_of_cells(workspace)
+    shape = _join_cells(workspace)
     if shape is None:
         return by_cells(workspace, radius)
-    polygons = _polygons(workspace, shape, workspace.bounds, radius)
-    return replace(workspace, occupied=raster.overlapped(polygons, workspace), shapes=polygons)
+    polygons = _grow_polygons(workspace, shape, workspace.bounds, radius)
+    return replace(workspace, occupied=raster.find_overlap(polygons, workspace), shapes=polygons)
 
 
-def suited(workspace: Workspace, kinds: Collection[str] | None) -> Workspace:
+def choose_suitable(workspace: Workspace, kinds: Collection[str] | None) -> Workspace:
     """A grown map for a planner that serves some kinds of workspace, None for all: the polygons
     themselves, unless it needs cells.
     """
@@ -110,21 +116,21 @@ def check_radius(radius: float) -> None:
         )
 
 
-def _shrunk(bounds: Bounds, radius: float) -> Bounds:
+def _shrink(bounds: Bounds, radius: float) -> Bounds:
     left, right, bottom, top = bounds
     if min(right - left, top - bottom) < 2 * radius + SMALLEST_FEATURE:
-        raise _nothing_free(radius)
+        raise _describe_nothing_free(radius)
     return left + radius, right - radius, bottom + radius, top - radius
 
 
-def _nothing_free(radius: float) -> ValueError:
+def _describe_nothing_free(radius: float) -> ValueError:
     return ValueError(
         f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its "
         "border; expected a smaller one"
     )
 
 
-def _polygons(
+def _grow_polygons(
     workspace: Workspace,
     shape: "shapely.Geometry",
     bounds: Bounds,
@@ -134,14 +140,14 @@ def _polygons(
     import shapely
 
     reach = radius - SLACK
-    limits = _shrunk(bounds, reach)
-    outline, centres = _outline(shape, reach)
+    limits = _shrink(bounds, reach)
+    outline, centres = _find_outline(shape, reach)
     inside = shapely.box(limits[0], limits[2], limits[1], limits[3])
     if inside.difference(outline).area == 0:
-        raise _nothing_free(radius)
+        raise _describe_nothing_free(radius)
     parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
     growth = Growth(radius, workspace, read_only(centres, float))
-    return Polygons(limits, tuple(map(rings_of, parts)), workspace.unit, growth)
+    return Polygons(limits, tuple(map(list_rings_of_polygon, parts)), workspace.unit, growth)
 
 
 def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
@@ -159,7 +165,7 @@ def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
     return shapely.remove_repeated_points(shapely.MultiPolygon(parts), _SAME_POINT)
 
 
-def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry", np.ndarray]:
+def _find_outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry", np.ndarray]:
     """A shape and what is closer to it, and its convex corners (n, 2).
 
     It is the union of the shape, of a rectangle outside each side, and of a sector at each convex
@@ -168,25 +174,25 @@ def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry
     """
     import shapely
 
-    corners, before, after = _corners(shape)
+    corners, before, after = _list_corners(shape)
     if not len(corners):
         return shape, corners
-    along = unit(after - corners)
+    along = normalise(after - corners)
     out = np.column_stack([along[:, 1], -along[:, 0]])  # the shape lies to the left
     sides = shapely.polygons(
         np.stack([corners, corners + reach * out, after + reach * out, after], axis=1)
     )
-    arriving = unit(corners - before)
+    arriving = normalise(corners - before)
     first = np.column_stack([arriving[:, 1], -arriving[:, 0]])
     turn = np.arctan2(cross(arriving, along), (arriving * along).sum(axis=1))
     convex = np.flatnonzero(turn > _STRAIGHT)
     sectors = [
-        shapely.Polygon(_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex
+        shapely.Polygon(_build_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex
     ]
     return _clean(shapely.union_all([shape, *sides, *sectors])), corners[convex]
 
 
-def _sector(
+def _build_sector(
     corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarray, turn: float
 ) -> np.ndarray:
     """A corner, and the tangents (n, 2) around its arc, from one unit vector to another."""
@@ -197,18 +203,18 @@ def _sector(
     return corner + reach * np.vstack([[0.0, 0.0], first, around, last])
 
 
-def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _list_corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and
     after each.
     """
-    every = [np.empty((0, 2)), *rings(shape)]
+    every = [np.empty((0, 2)), *list_rings(shape)]
     corners, before, after = (
         np.concatenate([np.roll(ring, by, axis=0) for ring in every]) for by in (0, 1, -1)
     )
     return corners, before, after
 
 
-def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
+def _join_cells(grid: Grid) -> "shapely.Geometry | None":
     """The occupied cells as one shape; None if it has more than `MOST_CORNERS` corners."""
     import shapely
 
@@ -236,7 +242,7 @@ def by_cells(grid: Grid, radius: float) -> Grid:
     touching = binary_dilation(walled, np.ones((3, 3), dtype=bool))
     occupied = walled | (distance_transform_edt(~touching) * grid.cell < radius - SLACK)
     if occupied.all():
-        raise _nothing_free(radius)
+        raise _describe_nothing_free(radius)
     return replace(
         grid, occupied=occupied[1:-1, 1:-1], growth=Growth(radius, grid, np.empty((0, 2)))
     )

@@ -22,9 +22,9 @@ from bezierplan.schema.model import (
     Model,
     NotNegative,
     Positive,
-    fault_of,
+    build_value_type,
+    describe_fault,
     is_number,
-    value,
 )
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import MOST_CELLS, check_cells, check_numbers, check_thickness
@@ -51,8 +51,8 @@ class Content(Model):
 
     image: Line = Field(description="the name of an image beside it")
     resolution: Positive = Field(description="units per pixel, a number above 0")
-    origin: Annotated[list, value(_is_origin, "[x, y, 0], a map that is not turned")] = Field(
-        description="[x, y, 0], the lower left pixel's corner and no yaw"
+    origin: Annotated[list, build_value_type(_is_origin, "[x, y, 0], a map that is not turned")] = (
+        Field(description="[x, y, 0], the lower left pixel's corner and no yaw")
     )
     negate: Literal[0, 1, False, True] = Field(0, description="0 (dark is occupied) or 1")
     occupied_thresh: NotNegative = Field(0.65, description="a number of at least 0")
@@ -65,7 +65,7 @@ def read(file: Path, folder: Path, unit: str, unknown: Unknown = "occupied") -> 
 
     folder: where the image must lie. Raises ValueError, naming the key and what is expected.
     """
-    return _grid(image_of(file, folder), _content(file), unit, unknown)
+    return _build_grid(find_image(file, folder), _read_content(file), unit, unknown)
 
 
 def read_image(file: Path, resolution: float, unit: str, unknown: Unknown = "occupied") -> Grid:
@@ -74,33 +74,33 @@ def read_image(file: Path, resolution: float, unit: str, unknown: Unknown = "occ
     resolution: side of a pixel, in units. Raises ValueError, naming what is wrong.
     """
     content = Content(image=file.name, resolution=resolution, origin=[0.0, 0.0, 0.0])
-    return _grid(file, content, unit, unknown)
+    return _build_grid(file, content, unit, unknown)
 
 
-def _grid(image: Path, content: Content, unit: str, unknown: Unknown) -> Grid:
+def _build_grid(image: Path, content: Content, unit: str, unknown: Unknown) -> Grid:
     check_thickness(content.resolution, "resolution:")
     x, y, _ = content.origin
-    occupied = _occupied(image, content, unknown)
+    occupied = _find_occupied(image, content, unknown)
     grid = Grid(occupied, float(content.resolution), unit, (float(x), float(y)))
     check_numbers(np.array(grid.bounds), "origin, resolution: the border")
     return grid
 
 
-def image_of(file: Path, folder: Path) -> Path:
+def find_image(file: Path, folder: Path) -> Path:
     """The image of a map_server YAML file, which lies in a folder. Raises ValueError if there is
     none.
 
     ROS's map_saver writes the path at which it saved the image. On another machine, the image of
     that name beside the YAML file is meant.
     """
-    name = _content(file).image
+    name = _read_content(file).image
     for image in (file.parent / name, file.parent / PureWindowsPath(name).name):
         if image.is_file() and image.resolve().is_relative_to(folder.resolve()):
             return image
     raise ValueError(f"image: {name}: no such file in {file.parent}; expected one")
 
 
-def _content(file: Path) -> Content:
+def _read_content(file: Path) -> Content:
     """The keys of a map_server YAML file, checked; others are ignored, unless one looks like a key
     that is misspelt.
     """
@@ -108,15 +108,15 @@ def _content(file: Path) -> Content:
     if isinstance(content, dict):
         for key in content.keys() - keys:
             if difflib.get_close_matches(key.lower(), keys, cutoff=0.7):
-                raise checked.Fault(f"{key}: unknown key{checked.closest(key, keys)}")
+                raise checked.Fault(f"{key}: unknown key{checked.suggest_closest(key, keys)}")
         content = {key: entry for key, entry in content.items() if key in keys}
     try:
         return Content.model_validate(content)
     except ValidationError as error:
-        raise fault_of(error) from None
+        raise describe_fault(error) from None
 
 
-def _occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
+def _find_occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
     """Which pixels count as occupied: bool (rows, columns), the bottom row first."""
     from PIL import Image
 
@@ -124,7 +124,7 @@ def _occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
         with Image.open(file) as image:
             columns, rows = image.size
             if columns * rows <= MOST_CELLS:
-                light, known = _shades(image)
+                light, known = _measure_shades(image)
     except Exception as error:  # of a damaged file each format raises another one
         raise ValueError(
             f"image: {file.name}: cannot be read as an image ({type(error).__name__})"
@@ -143,7 +143,7 @@ def _occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
     return ~free[::-1]
 
 
-def _shades(image: Any) -> tuple[np.ndarray, np.ndarray]:
+def _measure_shades(image: Any) -> tuple[np.ndarray, np.ndarray]:
     """How light each pixel is (rows, columns), from 0 to 1, the mean of its colours; and whether it
     is known, bool: unless it is transparent.
     """

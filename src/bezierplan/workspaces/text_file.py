@@ -6,7 +6,7 @@ LARGEST_FILE = 16 * 2**20
 """Most bytes of a text file: enough for a map of 4,000 x 4,000 cells."""
 
 
-def lines_of(text: str) -> list[str]:
+def split_lines(text: str) -> list[str]:
     """The lines of a text, without blanks at their ends and blank lines at its end."""
     return [line.rstrip() for line in text.rstrip().split("\n")]
 

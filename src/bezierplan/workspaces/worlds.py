@@ -117,7 +117,7 @@ def to_json(world: World) -> str:
     """A world as text; `from_json` restores it bit by bit."""
     if isinstance(world, ChangingCells):
         content = {
-            "maps": [files.to_json(each) for each in world.maps],
+            "maps": [files.write_json(each) for each in world.maps],
             "moments": world.moments.tolist(),
         }
     else:
@@ -136,7 +136,7 @@ def from_json(text: str) -> World:
     """The world that `to_json` wrote."""
     content = json.loads(text)
     if "maps" in content:
-        maps = tuple(map(_grid_from_json, content["maps"]))
+        maps = tuple(map(_read_grid, content["maps"]))
         return ChangingCells(maps, np.array(content["moments"]), content["pace"], content["end"])
     table = np.array(content["circles"], dtype=float).reshape(-1, 5)
     return MovingCircles(
@@ -152,8 +152,8 @@ def from_json(text: str) -> World:
     )
 
 
-def _grid_from_json(text: str) -> Grid:
-    """The map that `files.to_json` wrote."""
-    workspace = files.from_json(text)
+def _read_grid(text: str) -> Grid:
+    """The map that `files.write_json` wrote."""
+    workspace = files.read_json(text)
     assert isinstance(workspace, Grid)  # the cells of a world change
     return workspace

@@ -23,7 +23,7 @@ from bezierplan.analysis.audit import possible
 from bezierplan.analysis.audit.rows import checked, place
 from bezierplan.analysis.results import keys_of
 from bezierplan.analysis.table_kinds import Identify
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -97,7 +97,7 @@ def applies(entry: Identify, row: dict) -> bool:
     where = {"metric": entry.metric} | entry.where
     if entry.statistic:
         where["statistic"] = entry.statistic
-    return all(row.get(column) in one_or_list(wanted) for column, wanted in where.items())
+    return all(row.get(column) in convert_to_list(wanted) for column, wanted in where.items())
 
 
 def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identification | None:
@@ -211,7 +211,7 @@ def of_table(
                 f"{matched} of {len(tries)} are such lengths; the chance of as many: {chance:.2g}"
             )
             location = ", ".join(
-                f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
+                f"{key}={' or '.join(map(str, convert_to_list(wanted)))}"
                 for key, wanted in (entry.where | {"statistic": entry.statistic}).items()
                 if wanted
             )

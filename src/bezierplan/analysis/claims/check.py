@@ -19,24 +19,24 @@ from bezierplan.schema.model import (
     Model,
     Positive,
     Where,
+    build_error,
+    build_list_type,
+    build_mapping_type,
+    build_value_type,
+    convert_to_list,
     is_line,
     is_number,
-    listed,
-    mapping_or,
-    one_or_list,
-    value,
-    wrong,
 )
 
 Group = Annotated[
     str | float,
-    value(
+    build_value_type(
         lambda given: is_line(given) or is_number(given),
         "a value of the column `across`, or rest",
     ),
 ]
-Groups = listed(Group)
-Columns = listed(Column)
+Groups = build_list_type(Group)
+Columns = build_list_type(Column)
 
 
 class PublishedMargin(Model):
@@ -134,7 +134,7 @@ class ClaimCheck(Model):
     @property
     def experiments(self) -> list[str]:
         """Experiments whose runs are judged."""
-        return one_or_list(self.experiment or [])
+        return convert_to_list(self.experiment or [])
 
     @property
     def cells(self) -> str | None:
@@ -144,7 +144,7 @@ class ClaimCheck(Model):
     @property
     def groups_named(self) -> list:
         """All groups that the check names."""
-        lists = [one_or_list(each) for key in GROUP_KEYS for each in getattr(self, key) or []]
+        lists = [convert_to_list(each) for key in GROUP_KEYS for each in getattr(self, key) or []]
         return list(itertools.chain.from_iterable(lists))
 
 
@@ -152,13 +152,13 @@ def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
     """Raise the error of a check that compares a group with itself."""
     for group, other in pairs:
         if group == other:
-            raise wrong(f"{key}: {group}: is compared with itself; expected another group")
+            raise build_error(f"{key}: {group}: is compared with itself; expected another group")
 
 
 class OfRuns(ClaimCheck):
     """Checks of runs."""
 
-    experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
+    experiment: build_list_type(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
     where: Where = Field(
         {},
@@ -178,7 +178,7 @@ class OfRuns(ClaimCheck):
     def _check_columns(self) -> "OfRuns":
         """A column is either compared, or told apart, or averaged, or numbers replicates."""
         named = {
-            key: one_or_list(getattr(self, key, None) or [])
+            key: convert_to_list(getattr(self, key, None) or [])
             for key in ("every", "pool", self.cells_key, "replicate")
             if key
         }
@@ -186,7 +186,7 @@ class OfRuns(ClaimCheck):
         for key, columns in named.items():
             for column in columns:
                 if column in owners:
-                    raise wrong(
+                    raise build_error(
                         f"{key}: {column}: is in {owners[column]} already; "
                         "expected it in one of the two"
                     )
@@ -223,7 +223,7 @@ class WithMargin(OfRuns):
         "absolute",
         description="absolute (left out: this), or relative to the value of the other group",
     )
-    margin: Annotated[Any, mapping_or(PublishedMargin, Positive)] = Field(
+    margin: Annotated[Any, build_mapping_type(PublishedMargin, Positive)] = Field(
         description="the smallest effect that matters: a number above 0, or {published: share}, "
         "that share of the other group's value (the share itself for a metric that is true or "
         "false), or the printed difference of the same cells if it is smaller"

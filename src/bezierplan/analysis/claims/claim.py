@@ -13,11 +13,11 @@ from bezierplan.schema.model import (
     Name,
     Names,
     Values,
-    listed,
-    matching,
-    one_of,
-    one_or_list,
-    wrong,
+    build_choice_type,
+    build_error,
+    build_list_type,
+    convert_to_list,
+    match_text,
 )
 
 MOST_CHECKS = 100
@@ -25,7 +25,7 @@ MOST_CHECKS = 100
 MOST_VARIANTS = 100
 """Combinations of the values of a claim's variants, each a row of its own."""
 
-ClaimId = Annotated[str, matching(r"C[1-9][0-9]*", "C and a number, such as C1")]
+ClaimId = Annotated[str, match_text(r"C[1-9][0-9]*", "C and a number, such as C1")]
 
 
 class Claim(Model):
@@ -36,7 +36,7 @@ class Claim(Model):
     statement: Line = Field(
         description="one plain sentence of at most 160 characters, in words of one's own"
     )
-    artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
+    artefact: build_list_type(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
         [],
         description="the table or figure that shows it, or a list of them; the groups that `rest` "
         "and the metric rank range over are theirs",
@@ -66,14 +66,14 @@ class Claim(Model):
         "`together`: all as one "
         "sentence, such as that one is the best, which a single comparison can refute",
     )
-    variants: dict[str, listed(Values)] = Field(
+    variants: dict[str, build_list_type(Values)] = Field(
         {},
         description="column → list of values: the claim is judged with the first one, and once "
         "more, in a row of its own, with each of the others, if any, in its place; null is no "
         "condition",
         min_length=1,
     )
-    checks: list[Annotated[ClaimCheck, one_of("test", kinds())]] = Field(
+    checks: list[Annotated[ClaimCheck, build_choice_type("test", kinds())]] = Field(
         description="a list of checks, at least one of them primary",
         min_length=1,
         max_length=MOST_CHECKS,
@@ -82,12 +82,12 @@ class Claim(Model):
     @model_validator(mode="after")
     def _check_decides(self) -> "Claim":
         if not any(check.primary for check in self.checks):
-            raise wrong("checks: every check has secondary: true; expected one that decides")
+            raise build_error("checks: every check has secondary: true; expected one that decides")
         if math.prod(map(len, self.variants.values())) > MOST_VARIANTS:
-            raise wrong(f"variants: expected at most {MOST_VARIANTS} combinations of values")
+            raise build_error(f"variants: expected at most {MOST_VARIANTS} combinations of values")
         for column, values in self.variants.items():
-            if len({len(one_or_list(each)) for each in values}) > 1:
-                raise wrong(
+            if len({len(convert_to_list(each)) for each in values}) > 1:
+                raise build_error(
                     f"variants: {column}: expected values, or lists of them that are equally long"
                 )
         return self
@@ -99,4 +99,4 @@ class Claim(Model):
     @property
     def artefacts(self) -> list[str]:
         """Tables and figures that show it."""
-        return one_or_list(self.artefact)
+        return convert_to_list(self.artefact)

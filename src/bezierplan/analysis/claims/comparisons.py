@@ -21,7 +21,7 @@ from bezierplan.analysis.claims.published import PrintedTable, printed, printed_
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.results import pick, repeated, select
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 
 REST = "rest"
 # Columns with one value per unit of a comparison; several values would silently mix their runs.
@@ -75,7 +75,7 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
     groups = []
     for where in [part.where for part in _parts_of_artefact(check, claim, material)] or [{}]:
         if across in where:
-            groups += one_or_list(where[across])
+            groups += convert_to_list(where[across])
         else:
             made = [name for name in check.experiments if name in material.results]
             every = [material.results[name].runs[across].dropna() for name in made]

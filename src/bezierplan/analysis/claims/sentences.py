@@ -22,7 +22,7 @@ from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.naming import amount, column_name
 from bezierplan.analysis.numbers.baseline_comparison import number
-from bezierplan.schema.model import is_number, one_or_list
+from bezierplan.schema.model import convert_to_list, is_number
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import equal_within, function, trend
@@ -88,8 +88,8 @@ def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
         if value is True:
             words.append(column_name(column, labels))
             continue
-        names = [labels.get(str(each), _plain(each)) for each in one_or_list(value)]
-        known = all(str(each) in labels for each in one_or_list(value))
+        names = [labels.get(str(each), _plain(each)) for each in convert_to_list(value)]
+        known = all(str(each) in labels for each in convert_to_list(value))
         words.append(("" if known else f"{column_name(column, labels)} ") + " and ".join(names))
     return ", ".join(words)
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, Comparing, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 
 
 def variants(claim: Claim) -> list[dict[str, Any]]:
@@ -20,7 +20,8 @@ def variants(claim: Claim) -> list[dict[str, Any]]:
 def name_of(assignment: dict[str, Any]) -> str:
     """The name of an assignment in claims.csv, by which random draws are seeded."""
     return ", ".join(
-        f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items()
+        f"{column}={' '.join(map(str, convert_to_list(value)))}"
+        for column, value in assignment.items()
     )
 
 
@@ -34,7 +35,7 @@ def in_variant(
     condition of `where`, and None there is no condition.
     """
     for column, chosen in assignment.items():
-        pairs = dict(zip(one_or_list(first[column]), one_or_list(chosen), strict=True))
+        pairs = dict(zip(convert_to_list(first[column]), convert_to_list(chosen), strict=True))
         if any(_exchanged(check, column, dict.fromkeys(pairs)) != check for check in checks):
             checks = [_exchanged(check, column, pairs) for check in checks]
         elif chosen is not None:

@@ -79,7 +79,7 @@ def problem_rows(problems: Mapping[str, Problem]) -> pd.DataFrame:
             "problem": name,
             **dict(zip(("start_x", "start_y", "target_x", "target_y"), each.start + each.target)),
             "bound": shortest_paths.shortest_path(each).length,
-            "map": files.to_json(each.workspace),
+            "map": files.write_json(each.workspace),
         }
         for name, each in problems.items()
     ]

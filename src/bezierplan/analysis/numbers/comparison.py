@@ -54,7 +54,7 @@ from bezierplan.analysis.audit import identified, possible
 from bezierplan.analysis.numbers import tables
 from bezierplan.analysis.results import Results, groups, keys_of, printed_numbers, select
 from bezierplan.analysis.table_kinds import Identify, Pivot
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
@@ -157,7 +157,7 @@ def compare(
     """
     key_columns = keys_of(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
-    methods, beside = one_or_list(spec.where.get("method", [])), []
+    methods, beside = convert_to_list(spec.where.get("method", [])), []
     if methods and "method" in keys:
         variants = [variant for variant, method in variant_of.items() if method in methods]
         beside = [name for name in variants + baselines if name not in methods]

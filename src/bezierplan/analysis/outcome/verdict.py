@@ -17,7 +17,7 @@ from bezierplan.analysis.audit.rows import RELATIONS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import select
 from bezierplan.schema import checked
-from bezierplan.schema.model import Model, matching, parsed, wrong
+from bezierplan.schema.model import Model, build_error, match_text, parse
 
 TAKES = {
     "min": pd.Series.min,
@@ -59,7 +59,7 @@ class Sentence(Model):
     holds: list[
         Annotated[
             str,
-            matching(
+            match_text(
                 r"\w+ ([<>]=?|==) .+",
                 "a value, a relation, and what it is compared with, such as p < 0.05",
             ),
@@ -73,7 +73,7 @@ class Sentence(Model):
             for condition in self.holds:
                 self.values[condition.split()[0]]
         except (LookupError, ValueError) as error:
-            raise wrong(f"{error}: expected values, of {', '.join(self.values)}") from None
+            raise build_error(f"{error}: expected values, of {', '.join(self.values)}") from None
         return self
 
 
@@ -101,7 +101,7 @@ class Follows(NamedTuple):
 
 def read(file: str | Path) -> VerdictFile:
     """The verdict of a study, from its file. Raises Fault."""
-    return parsed(VerdictFile, checked.read(Path(file)), str(file))
+    return parse(VerdictFile, checked.read(Path(file)), str(file))
 
 
 def _rows(table: pd.DataFrame, where: dict[str, Any], *columns: str) -> pd.DataFrame:

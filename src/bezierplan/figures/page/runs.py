@@ -134,7 +134,7 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Ro
 
 
 def _shapes(problem: Problem) -> dict[str, Any]:
-    shapes = _rounded_json(files.to_json(problem.workspace))
+    shapes = _rounded_json(files.write_json(problem.workspace))
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 

@@ -42,9 +42,9 @@ from bezierplan.schema.model import (
     Repeat,
     Where,
     Workspace,
-    listed,
-    one_or_list,
-    wrong,
+    build_error,
+    build_list_type,
+    convert_to_list,
 )
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Sources:
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
             first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
-            if names := one_or_list(panel.published):
+            if names := convert_to_list(panel.published):
                 first.append({name: self.published[name] for name in names})
             self._tables[call] = self.functions[panel.data](*first, **panel.arguments)
         return self._tables[call]
@@ -176,7 +176,7 @@ class TablePanel(Panel):
         "`workspace` it is called with that, with "
         "`published` with those published tables by file name"
     )
-    published: listed(PrintedTable, single=True) = Field(
+    published: build_list_type(PrintedTable, single=True) = Field(
         [], description="the name of a published table, or a list of names"
     )
     workspace: Workspace = Field(None, description="the name of a workspace")
@@ -233,7 +233,7 @@ class Pick(Model):
     def _check_one(self) -> Pick:
         ways = self.model_fields_set - {"having", "layout"}
         if len(ways) != 1:
-            raise wrong(
+            raise build_error(
                 f"{len(ways)} keys; expected {{lowest: column}}, "
                 f"{{median: column}} or {{repeat: number}}"
             )
@@ -251,7 +251,7 @@ def exactly_one(panel: Model, *keys: str) -> None:
     """Raise the error of a panel that does not have exactly one of the keys."""
     both = [key for key in keys if key in panel.model_fields_set]
     if len(both) != 1:
-        raise wrong(f"{' and '.join(both) or 'neither'}: expected either {' or '.join(keys)}")
+        raise build_error(f"{' and '.join(both) or 'neither'}: expected either {' or '.join(keys)}")
 
 
 def only(runs: pd.DataFrame, column: str) -> Any:

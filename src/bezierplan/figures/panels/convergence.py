@@ -24,7 +24,7 @@ from bezierplan.figures.groups import (
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
-from bezierplan.schema.model import Column, PrintedTable, Whole, wrong
+from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Options(RunsPanel):
         exactly_one(self, "pick", "hue")
         for key in {"statistic", "printed"} & self.model_fields_set:
             if self.hue is None:
-                raise wrong(f"{key}: needs hue")
+                raise build_error(f"{key}: needs hue")
         return self
 
 

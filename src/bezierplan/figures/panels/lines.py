@@ -33,7 +33,7 @@ from bezierplan.schema.model import (
     Metric,
     NumberColumn,
     Where,
-    wrong,
+    build_error,
 )
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class Options(MetricPanel, TablePanel):
     def _check_source(self) -> Options:
         exactly_one(self, "experiment", "data")
         if self.printed is not None and self.experiment is None:
-            raise wrong("printed: needs experiment")
+            raise build_error("printed: needs experiment")
         return self
 
     def source(self, sources: Sources) -> Results | pd.DataFrame:

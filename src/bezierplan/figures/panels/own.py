@@ -8,7 +8,7 @@ from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel
-from bezierplan.schema.model import Metric, Name, Names, listed
+from bezierplan.schema.model import Metric, Name, Names, build_list_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +23,7 @@ class Options(RunsPanel):
         "matplotlib, a table of the runs (method, problem, condition, repeat and metrics), and by "
         "method keywords of `axes.plot`: its colour, marker and label in all figures"
     )
-    metrics: listed(Metric) = Field(description="a list of metrics, columns of that table")
+    metrics: build_list_type(Metric) = Field(description="a list of metrics, columns of that table")
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

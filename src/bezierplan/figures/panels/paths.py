@@ -27,7 +27,7 @@ from bezierplan.schema.model import (
     Names,
     Number,
     PrintedTable,
-    wrong,
+    build_error,
 )
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Path, Workspace
@@ -188,7 +188,7 @@ class Options(RunsPanel):
         exactly_one(self, "pick", "explicit")
         exactly_one(self, "experiment", "explicit")
         if "measure" in self.model_fields_set and self.hue is None:
-            raise wrong("measure: needs hue")
+            raise build_error("measure: needs hue")
         return self
 
 

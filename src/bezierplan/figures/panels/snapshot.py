@@ -12,7 +12,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, only
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.schema.model import is_number, value
+from bezierplan.schema.model import build_value_type, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,9 +56,9 @@ class Options(RunsPanel):
     drives: ClassVar[bool] = True
 
     pick: Pick = Field(description=PICK)
-    at: Annotated[float, value(lambda share: is_number(share) and 0 <= share <= 1, "")] = Field(
-        description="the moment, as a share of the time of the drive, a number from 0 to 1"
-    )
+    at: Annotated[
+        float, build_value_type(lambda share: is_number(share) and 0 <= share <= 1, "")
+    ] = Field(description="the moment, as a share of the time of the drive, a number from 0 to 1")
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

@@ -102,7 +102,7 @@ def check(pieces: np.ndarray, region: Region) -> Check:
 
     >>> from bezierplan.geometry.region import build_region
     >>> from bezierplan.workspaces.grid import from_lines
-    >>> room = region(from_lines(["....", ".##.", "...."], cell=1.0, unit="m"))
+    >>> room = build_region(from_lines(["....", ".##.", "...."], cell=1.0, unit="m"))
     >>> straight = check(np.array([[[0.5, 0.5], [3.5, 2.5]]]), room)
     >>> straight.feasible, round(straight.collision_at, 6), straight.depth
     (False, 0.25, 0.5)

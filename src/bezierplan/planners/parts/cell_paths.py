@@ -12,7 +12,7 @@ from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import Plan
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
+from bezierplan.workspaces.lattice import Corners, Lattice, build_grid_lattice, list_points
 from bezierplan.workspaces.problem import Path, Problem
 
 ONE_CELL, RECONNECT, WALK = range(3)
@@ -38,8 +38,10 @@ class Rules(NamedTuple):
 
 
 def build_lattice(problem: Problem, corners: int) -> Lattice:
-    """The lattice of a problem on a grid. Raises ValueError as `lattice`."""
-    return lattice(problem.workspace, problem.start, problem.target, Corners(corners).name)
+    """The lattice of a problem on a grid. Raises ValueError as `build_grid_lattice`."""
+    return build_grid_lattice(
+        problem.workspace, problem.start, problem.target, Corners(corners).name
+    )
 
 
 def plan_of(
@@ -49,7 +51,11 @@ def plan_of(
     cells. stop: why the search ended if it found a path.
     """
     grid, solved = problem.workspace, len(cells) > 0
-    path = Path("polyline", points(grid, problem.start, problem.target, cells)) if solved else None
+    path = (
+        Path("polyline", list_points(grid, problem.start, problem.target, cells))
+        if solved
+        else None
+    )
     return Plan(
         path=path,
         objective=history[-1] * grid.cell,

@@ -10,7 +10,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import distances
+from bezierplan.workspaces.lattice import compute_distances
 
 
 class Field(NamedTuple):
@@ -64,7 +64,7 @@ def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: st
         left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
         index = np.lexsort((-left, (points - ends[0]) @ along))
     elif point_order == "geodesic":
-        far = distances(walls, *np.floor(ends[0, ::-1]).astype(int))
+        far = compute_distances(walls, *np.floor(ends[0, ::-1]).astype(int))
         index = np.argsort(far[row, column], kind="stable")
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
     room[room < 0] = longer  # there is no occupied cell

@@ -12,10 +12,10 @@ from bezierplan.kernels import allocation_free, compile_inline
 from bezierplan.planners.parts.random_integers import draw_below
 from bezierplan.workspaces.ground import (
     Ground,
-    edge_energy,
-    free_neighbours,
-    obstacles_along,
-    obstacles_on,
+    compute_edge_energy,
+    count_obstacles_along,
+    count_obstacles_on,
+    list_free_neighbours,
 )
 
 Mutation = IntEnum("Mutation", "random random_repair ref12 ref21 proposed", start=0)
@@ -68,7 +68,7 @@ def _mutate_until_feasible(rng, path, alleles, ground):
         k = 1 + draw_below(rng, len(path) - 2)
         before = path[k]
         path[k] = alleles[draw_below(rng, len(alleles))]
-        if obstacles_along(path, ground) == 0:
+        if count_obstacles_along(path, ground) == 0:
             return 0
         path[k] = before
     return 0
@@ -97,7 +97,7 @@ def _has_obstacle(path, k, ground, beside_obstacle):
     cells around the node is occupied.
     """
     if not beside_obstacle:
-        return obstacles_on(ground, path[k], path[k + 1]) > 0
+        return count_obstacles_on(ground, path[k], path[k + 1]) > 0
     row, column = divmod(path[k], ground.occupied.shape[1])
     return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
 
@@ -109,7 +109,7 @@ def _move_to_best_neighbour(path, k, ground, rules, neighbours):
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
-    count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
+    count = list_free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     best, least = path[k], np.inf
     if rules.keep_better:
         least = _compute_cost_through(path, k, path[k], ground, rules.penalty)
@@ -124,10 +124,12 @@ def _move_to_best_neighbour(path, k, ground, rules, neighbours):
 @compile_inline
 def _compute_cost_through(path, k, cell, ground, penalty):
     """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
-    encounters = obstacles_on(ground, path[k - 1], cell) + obstacles_on(ground, cell, path[k + 1])
+    encounters = count_obstacles_on(ground, path[k - 1], cell) + count_obstacles_on(
+        ground, cell, path[k + 1]
+    )
     return (
-        edge_energy(ground, path[k - 1], cell)
-        + edge_energy(ground, cell, path[k + 1])
+        compute_edge_energy(ground, path[k - 1], cell)
+        + compute_edge_energy(ground, cell, path[k + 1])
         + penalty * encounters
     )
 
@@ -138,15 +140,15 @@ def _mutate_as_reference_21(rng, path, ground, rules, neighbours):
     in the direction of the target and whose two edges are free (reference 21).
     """
     k = 1 + draw_below(rng, len(path) - 2)
-    count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
+    count = list_free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     for tried in range(count):
         chosen = tried + draw_below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
         if (
             _is_towards(path[0], cell, path[-1], ground.occupied.shape[1])
-            and obstacles_on(ground, path[k - 1], cell) == 0
-            and obstacles_on(ground, cell, path[k + 1]) == 0
+            and count_obstacles_on(ground, path[k - 1], cell) == 0
+            and count_obstacles_on(ground, cell, path[k + 1]) == 0
         ):
             path[k] = cell
             return tried + 1

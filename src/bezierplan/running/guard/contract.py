@@ -20,7 +20,7 @@ from bezierplan.running import answer
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, suggest_closest
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -79,7 +79,7 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFi
     if not is_file(planner) and planner not in list_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
-            f".py{closest(planner, list_planners())}"
+            f".py{suggest_closest(planner, list_planners())}"
         )
     module = interface.load_planner_module(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")

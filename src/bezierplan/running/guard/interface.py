@@ -17,8 +17,8 @@ from bezierplan.planners import find_setting_fault, is_file, load_planner, read_
 from bezierplan.planners.parts.settings import read_setting
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, check_known, closest
-from bezierplan.schema.words import LONGEST, plain, told
+from bezierplan.schema.checked import Fault, check_known, suggest_closest
+from bezierplan.schema.words import LONGEST, describe_in_one_line, escape
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -54,7 +54,7 @@ def import_planner(planner: str) -> tuple[ModuleType | None, str]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a user's file can fail in any way
-        return None, told(error)
+        return None, describe_in_one_line(error)
     return module, find_interface_fault(module)
 
 
@@ -113,11 +113,11 @@ def ask(function: Callable[..., Any], location: str, *arguments: Any) -> None:
         function(*map(copy.copy, arguments))
         return
     except ValueError as error:
-        said = plain(" ".join(str(error).split()), LONGEST) or "ValueError"
+        said = escape(" ".join(str(error).split()), LONGEST) or "ValueError"
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a user's function can fail in any way
-        said = f"{function.__name__} of its planner fails ({told(error)})"
+        said = f"{function.__name__} of its planner fails ({describe_in_one_line(error)})"
     raise Fault(f"{location}: {said}")
 
 
@@ -129,7 +129,7 @@ def find_interface_fault(module: ModuleType) -> str:
     try:
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
-        return f"function plan: its annotations cannot be read ({told(error)})"
+        return f"function plan: its annotations cannot be read ({describe_in_one_line(error)})"
     settings = [each for each in parameters if each.kind is each.KEYWORD_ONLY]
     others = [each for each in parameters if each not in settings]
     if sum(each.default is each.empty for each in others) != 2 or any(
@@ -189,5 +189,5 @@ def _find_workspaces_fault(kinds: Any) -> str:
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
     for kind in kinds:
         if kind not in KINDS.values():
-            return f"workspaces: {kind}: unknown{closest(kind, KINDS.values())}"
+            return f"workspaces: {kind}: unknown{suggest_closest(kind, KINDS.values())}"
     return ""

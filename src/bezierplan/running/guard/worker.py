@@ -31,7 +31,7 @@ from bezierplan.running.jobs.watchdog import (
 )
 from bezierplan.running.simulation import robot
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.schema.words import told
+from bezierplan.schema.words import describe_in_one_line
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
@@ -245,7 +245,11 @@ def run_job_file(job_file: str, lines_file: str) -> None:
                     say("answer", each)
         # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
         except BaseException as error:
-            text = str(error) if isinstance(error, PlannerFailure) else f"{name}: {told(error)}"
+            text = (
+                str(error)
+                if isinstance(error, PlannerFailure)
+                else f"{name}: {describe_in_one_line(error)}"
+            )
             say("fails", [text, describe_error(error)])
         say("done", sorted(opened.SEEN))
         for stream in filter(None, (sys.stdout, sys.stderr)):

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
-from bezierplan.schema.words import plain, told
+from bezierplan.schema.words import describe_in_one_line, escape
 
 LAST = "CRITICAL "
 """What comes, in the log of a job that has failed, before the line that says why."""
@@ -52,7 +52,7 @@ def run_job(snakemake: Any) -> Iterator[Any]:
         said = (
             str(error)
             if isinstance(error, PlannerFailure)
-            else told(find_full_disk(error) or error)
+            else describe_in_one_line(find_full_disk(error) or error)
         )
         lines = said.splitlines()
         if len(lines) > MOST_TOLD:
@@ -71,7 +71,7 @@ def say(line: str) -> None:
 
 def report(log: str, line: str) -> None:
     """Write how a job has ended to its log and to stderr."""
-    line = f"{plain(line)} (log: {log})"
+    line = f"{escape(line)} (log: {log})"
     with suppress(OSError), open(log, "a", encoding="utf-8") as file:
         file.write(f"{LAST}{line}\n")
     say(line)
@@ -91,7 +91,7 @@ def describe_error(error: BaseException) -> str:
     characters.
     """
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
-    return "\n".join(plain(line, LONGEST_LINE) for line in lines[-MOST_LINES:])
+    return "\n".join(escape(line, LONGEST_LINE) for line in lines[-MOST_LINES:])
 
 
 @contextmanager

@@ -12,13 +12,13 @@ from bezierplan.schema.model import (
     Model,
     NotNegative,
     Positive,
+    build_value_type,
     is_number,
-    value,
 )
 
 Margins = Annotated[
     list[float],
-    value(
+    build_value_type(
         lambda given: (
             isinstance(given, list)
             and 0 < len(given) <= 100

@@ -34,11 +34,11 @@ from bezierplan.schema.model import (
     NotNegative,
     Number,
     Positive,
+    build_error,
+    build_value_type,
     is_line,
     is_number,
-    value,
-    whole,
-    wrong,
+    limit_whole,
 )
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.text_file import read_text
@@ -49,11 +49,13 @@ def _is_file_name(entry: Any) -> bool:
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
-FileName = Annotated[str, value(_is_file_name, "the name of a file, without { } * ? [ ]")]
+FileName = Annotated[
+    str, build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]")
+]
 File = Annotated[FileName, Names("file")]
 Unit = Annotated[
     str,
-    value(
+    build_value_type(
         lambda entry: isinstance(entry, str) and re.fullmatch(r"[^\W\d_]{1,20}", entry) is not None,
         "letters, 20 at most",
     ),
@@ -65,7 +67,7 @@ def of_length(length: int, form: str) -> AfterValidator:
 
     def check(entry: list) -> list:
         if len(entry) != length:
-            raise wrong(f"{entry!r}: expected {form}")
+            raise build_error(f"{entry!r}: expected {form}")
         return entry
 
     return AfterValidator(check)
@@ -73,7 +75,7 @@ def of_length(length: int, form: str) -> AfterValidator:
 
 Size = Annotated[
     float,
-    value(
+    build_value_type(
         lambda entry: is_number(entry) and entry >= SMALLEST_FEATURE,
         f"a number of at least {SMALLEST_FEATURE:g}",
     ),
@@ -81,7 +83,7 @@ Size = Annotated[
 """A side or a radius of something solid, in units."""
 
 Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
-CircleCount = Annotated[int, whole(1, 10_000)]
+CircleCount = Annotated[int, limit_whole(1, 10_000)]
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
@@ -123,7 +125,7 @@ class World(Workspace):
     pace: Positive = Field(
         description="how far a robot drives in a step, in units, a number above 0"
     )
-    steps: Annotated[int, whole(1, 10_000)] = Field(
+    steps: Annotated[int, limit_whole(1, 10_000)] = Field(
         description="the moment at which every drive in this world ends, "
         "in steps, a whole number from 1 to 10000"
     )

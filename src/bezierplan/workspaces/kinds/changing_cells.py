@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.schema.model import Model, Positive, wrong
+from bezierplan.schema.model import Model, Positive, build_error
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import File, Size, World, grid
 
@@ -32,7 +32,7 @@ class Change(Model):
     @model_validator(mode="after")
     def _check_moment(self) -> Change:
         if len(self.model_fields_set & {"after", "at"}) != 1:
-            raise wrong("expected either after or at")
+            raise build_error("expected either after or at")
         return self
 
 

@@ -10,7 +10,7 @@ from bezierplan.workspaces import grid
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
 from bezierplan.workspaces.limits import check_numbers, check_thickness
-from bezierplan.workspaces.text_file import lines_of
+from bezierplan.workspaces.text_file import split_lines
 
 
 class Options(Workspace):
@@ -28,12 +28,12 @@ def load(description: dict, folder: Path) -> Grid:
     numbers, likewise.
     """
     check_thickness(description["cell"], "cell:")
-    lines = lines_of(text(description, "file", folder))
+    lines = split_lines(text(description, "file", folder))
     with naming(description["file"]):
         flat = grid.from_lines(lines, float(description["cell"]), description["unit"])
         check_numbers(np.array(flat.bounds), f"cell: {description['cell']}: the border")
     if "heights" not in description:
         return flat
-    lines = lines_of(text(description, "heights", folder))
+    lines = split_lines(text(description, "heights", folder))
     with naming(description["heights"]):
         return replace(flat, heights=grid.heights_from_lines(lines, flat.occupied.shape))

@@ -5,7 +5,7 @@ from pathlib import Path
 from pydantic import Field
 
 from bezierplan.schema.model import NotNegative
-from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.geojson import read_geojson
 from bezierplan.workspaces.kinds import MARGIN, File, Workspace, naming, text
 from bezierplan.workspaces.polygons import Polygons
 
@@ -21,4 +21,4 @@ def load(description: dict, folder: Path) -> Polygons:
     """The border and the obstacles of a GeoJSON file."""
     content = text(description, "file", folder)
     with naming(description["file"]):
-        return polygons_from_geojson(content, description["unit"], description.get("margin"))
+        return read_geojson(content, description["unit"], description.get("margin"))

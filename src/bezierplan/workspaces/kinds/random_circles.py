@@ -7,11 +7,11 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from bezierplan.schema.model import NotNegative, Positive, is_number, value
+from bezierplan.schema.model import NotNegative, Positive, build_value_type, is_number
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of
-from bezierplan.workspaces.random_field import random_centres
+from bezierplan.workspaces.random_field import draw_centres
 from bezierplan.workspaces.seeds import generator
 
 RADIUS = (
@@ -32,7 +32,7 @@ class Options(Workspace):
     draws: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    radius: Annotated[Any, value(_is_radius, RADIUS)] = Field(description=RADIUS)
+    radius: Annotated[Any, build_value_type(_is_radius, RADIUS)] = Field(description=RADIUS)
     gap: NotNegative = Field(
         0, description="the least distance of circles from start and target, in units"
     )
@@ -78,7 +78,7 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     centres, radii = [], []
     for _ in range(description["circles"]):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
-        centres.append(random_centres(rng, 1, within, places, radius + gap)[0])
+        centres.append(draw_centres(rng, 1, within, places, radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
 

@@ -30,4 +30,4 @@ def sources(description: dict, folder: Path) -> list[Path]:
     """The YAML file and its image. Raises ValueError if it names none."""
     file = folder / description["file"]
     with naming(description["file"]):
-        return [file, ros.image_of(file, folder)]
+        return [file, ros.find_image(file, folder)]

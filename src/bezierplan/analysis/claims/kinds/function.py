@@ -14,7 +14,7 @@ from pydantic import Field
 from bezierplan.analysis.claims.check import EXPERIMENT, ClaimCheck
 from bezierplan.analysis.claims.effects import Finding, Terms
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, suggest_closest
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
@@ -23,7 +23,7 @@ from bezierplan.schema.model import (
     Line,
     Metric,
     Where,
-    listed,
+    build_list_type,
 )
 
 if TYPE_CHECKING:
@@ -42,7 +42,9 @@ class Options(ClaimCheck):
     arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
-    experiment: listed(Experiment, least=2, single=True) = Field(None, description=EXPERIMENT)
+    experiment: build_list_type(Experiment, least=2, single=True) = Field(
+        None, description=EXPERIMENT
+    )
     metric: Metric = Field(None, description="the name of a metric")
     where: Where = Field(
         {}, description="column of the runs table → value or list of values", min_length=1
@@ -59,7 +61,7 @@ def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Ter
     if check.name not in material.functions:
         raise Fault(
             f"claim {claim.id}: function {check.name}: "
-            f"unknown{closest(check.name, material.functions)}"
+            f"unknown{suggest_closest(check.name, material.functions)}"
         )
     function = material.functions[check.name]
     mark, effect, interval, n = function(

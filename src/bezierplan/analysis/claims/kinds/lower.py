@@ -42,7 +42,7 @@ from bezierplan.analysis.claims.check import (
 from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
-from bezierplan.schema.model import Flag, Metric, Positive, listed, wrong
+from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,10 +58,10 @@ class Options(Comparing):
     )
     groups: Groups = Field(None, description=GROUPS)
     than: Groups = Field(None, description=THAN)
-    pairs: listed(listed(Group, least=2)) = Field(
+    pairs: build_list_type(build_list_type(Group, least=2)) = Field(
         None, description="a list of [group, other group], in place of groups and than"
     )
-    order: listed(listed(Group), least=2) = Field(
+    order: build_list_type(build_list_type(Group), least=2) = Field(
         None,
         description="tiers, each on the claimed side of the next: a list of lists of groups, in "
         "place of groups and than",
@@ -90,9 +90,9 @@ class Options(Comparing):
     def _check_groups(self) -> Options:
         named = self.model_fields_set & set(GROUP_KEYS)
         if named not in ({"groups", "than"}, {"pairs"}, {"order"}):
-            raise wrong("groups: expected groups and than, or pairs, or order")
+            raise build_error("groups: expected groups and than, or pairs, or order")
         if any(len(pair) != 2 for pair in self.pairs or []):
-            raise wrong("pairs: expected a list of [group, other group]")
+            raise build_error("pairs: expected a list of [group, other group]")
         with_itself(self.compared, max(named))
         return self
 

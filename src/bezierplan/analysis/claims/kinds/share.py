@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
 from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
-from bezierplan.schema.model import Metric, Model, Number, is_number, value, wrong
+from bezierplan.schema.model import Metric, Model, Number, build_error, build_value_type, is_number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +43,7 @@ class Options(OfRuns):
     )
     threshold: Annotated[
         Any,
-        value(
+        build_value_type(
             lambda given: (
                 given in ("all", "none", "some", "as printed")
                 if isinstance(given, str)
@@ -69,14 +69,14 @@ class Options(OfRuns):
             needed = (
                 "has no direction" if self.direction else "needs a direction, at_least or at_most"
             )
-            raise wrong(f"threshold: {self.threshold}: {needed}")
+            raise build_error(f"threshold: {self.threshold}: {needed}")
         return self
 
     @model_validator(mode="after")
     def _check_truth(self) -> Options:
         metric = METRICS.get(self.metric)
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
-            raise wrong(
+            raise build_error(
                 f"event: missing key; {self.metric} is no truth: expected one of below, above, "
                 "at_most, at_least"
             )

@@ -53,7 +53,9 @@ def draw(description: dict, problem: dict, name: str) -> Grid:
 
     wanted, corners = description.get("lattice_length"), description["corners"]
     for grid in candidates(description, problem, name):
-        ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), corners)
+        ends = lattice.build_grid_lattice(
+            grid, tuple(problem["start"]), tuple(problem["target"]), corners
+        )
         start, target = divmod(ends.start, problem["side"]), divmod(ends.target, problem["side"])
         path = shortest_paths.lattice_path(grid.occupied, start, target, ends.diagonal, corners)
         length = path.length + ends.ends

@@ -60,7 +60,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
         for _ in range(_MOST_CHANGES):
             occupied = maps[-1].occupied.copy()
             occupied.flat[rng.choice(numbers, problem["obstacles"], replace=False)] ^= True
-            if random_field.connected(occupied, start, target):
+            if random_field.is_connected(occupied, start, target):
                 break
         else:
             raise ValueError(
