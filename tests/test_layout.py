@@ -13,6 +13,7 @@ from studies import built, studies
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
 from bezierplan.schema.model import convert_to_list
+from bezierplan.study.jobs import build_descriptions
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
