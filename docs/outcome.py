@@ -15,9 +15,9 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import naming, words
+from bezierplan.analysis import naming
 from bezierplan.analysis.markdown import table_text
-from bezierplan.analysis.numbers import benchmark
+from bezierplan.analysis.numbers import benchmark, comparison
 from bezierplan.analysis.outcome import headline, summary, verdict
 from bezierplan.analysis.results import of_folder
 from bezierplan.commands import studies_of
@@ -33,18 +33,18 @@ BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wh
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
-"""What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
+"""What many runs say: the site and the report take positions and verdicts from it alone."""
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 SCORED = ["experiment", "problem", "method", "runs", "feasible", "excess", "evaluations"]
 BESIDE = (
     "The proposed method, as multiples of the exact shortest path with rounded corners, which "
     "needs no search and is always free. A bend below 1 is smoother."
 )
-LAID = (
-    "In each cell below the printed number stands before ours, of many runs: + agrees, x "
-    "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
-    "name."
+RANGE = (
+    "Our range is where 95 % of experiments of the paper's size end under our default reading. It "
+    "cannot tell where it holds at least half of the paper's other numbers of the same kind."
 )
+LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
@@ -132,7 +132,7 @@ def paper(
     folder: Path,
     tables: Mapping[str, tuple[str, int]],
 ) -> str:
-    """The page of a paper, as markdown: its word and what follows, its main claims, and its tables
+    """The page of a paper, as markdown: what follows, its main claims, and its tables
     with the printed number beside ours in each cell.
 
     text: as from `following`. folder: of the study's results. tables: as for `write`.
@@ -142,7 +142,7 @@ def paper(
     main = claims.loc[claims["primary"] & claims["main"].astype(bool), [*heads]].fillna("")
     parts = [
         f"# {title}",
-        f"**{headline.word(claims).capitalize()}.** {text.strip()}",
+        text.strip(),
         "## What abstract and conclusion claim",
         table_text(main.rename(columns=heads).set_index("claim")),
         MORE.format(folder.name),
@@ -157,13 +157,12 @@ def paper(
 
 
 def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """A table with the printed number before ours in each cell, and the sign of its verdict."""
+    """Return a table with the printed number before our range in each cell, or before ours."""
     cells = ours.iloc[:, heads:].to_numpy()
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        sign = words.WORDS[number["verdict"]].sign if number["verdict"] in words.WORDS else ""
-        named = " =" if isinstance(number["identified"], str) else ""
-        cells[place] = f"{number['as_printed']}{named} / {cells[place]} {sign}".rstrip()
+        text = comparison.beside(number) or f"ours {cells[place]}"
+        cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
@@ -224,7 +223,7 @@ def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
     """
     parts = [f"**{' '.join(head.sentences)}**"]
     for table, headings, legend in (
-        (head.papers, headline.PAPERS, headline.LEGEND),
+        (head.papers, headline.PAPERS, RANGE),
         (head.methods, headline.METHODS, BESIDE),
     ):
         if not table.empty:

@@ -181,8 +181,8 @@ class TableOfRuns(Job):
     variants: dict[str, str]
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
-    reconstructed: bool
-    """Whether a map that it shows is not printed."""
+    reconstructed: list[str]
+    """Problems on maps that the paper does not print."""
     fitted: dict[str, dict]
     """By metric, the numbers to which something was fitted."""
     paired: bool
