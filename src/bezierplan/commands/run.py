@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from bezierplan.commands import is_study, study_named
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
+from bezierplan.running.jobs.watchdog import end_with_parent
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import one_or_list
@@ -40,7 +41,9 @@ def main(*words: str) -> None:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
     importlib.import_module("snakemake")  # or else it is told what to install
     out, err = map(forks.stream_for, (sys.stdout, sys.stderr))
-    workflow = subprocess.Popen(command(words), stdout=out, stderr=err, process_group=0)
+    workflow = subprocess.Popen(
+        command(words), stdout=out, stderr=err, process_group=0, preexec_fn=end_with_parent
+    )
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
         sys.exit(workflow.wait())
