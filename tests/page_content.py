@@ -117,7 +117,7 @@ def job() -> PageJob:
         title=HOSTILE,
         paper=SimpleNamespace(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
-        methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
+        methods={"a": MethodView("chaotic_pso", {"size": HOSTILE}, HOSTILE)},
         claims={
             name: SimpleNamespace(
                 checks=[checks_of_claims.check_of(LOWER)],
