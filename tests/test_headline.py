@@ -129,4 +129,4 @@ def test_markdown_leaves_out_what_no_study_has():
         "**Of 1 printed number 1 can be tested; of these we reproduce 1. Of 1 claim"
     )
     assert "| reproduced | 1 | 1 | 1 of 1 | 1 | 0 | 0 | 0 |" in text
-    assert headline.BESIDE not in text
+    assert headline.LEGEND in text

@@ -35,6 +35,11 @@ _CHAINS = {"polyline": 1, "cubic_chain": 3}
 # repeated control points; curvature is undefined there.
 STANDSTILL = 1e-3
 
+# Samples of a piece in which its largest curvature is sought: these for one piece, at least those
+# for one of many; and how often they close in on it.
+_MOST_SAMPLES, _LEAST_SAMPLES = 400, 16
+_ZOOMS = 4
+
 
 def least_points(curve: str) -> int:
     """Minimum number of control points of a curve kind, including start and target."""
@@ -238,6 +243,26 @@ def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
     cross = polygons.cross(first, second)
     kappa[moving] = cross[moving] / speed[moving] ** 3
     return kappa, speed
+
+
+def largest_curvature(path: Path) -> float:
+    """Return the largest absolute curvature of a path, in 1/unit, corners between pieces left out.
+
+    Each piece is sampled, and then more and more closely around its tightest sample. The curvature
+    counts as 0 where the curve stands still (`STANDSTILL`).
+    """
+    pieces = bezier_pieces(path)
+    count = max(_LEAST_SAMPLES, _MOST_SAMPLES // len(pieces))
+    low, high = np.zeros(len(pieces)), np.ones(len(pieces))
+    rows, largest = np.arange(len(pieces)), 0.0
+    for _ in range(_ZOOMS):
+        t = np.linspace(low, high, count, axis=1)
+        kappa = np.nan_to_num(np.abs(curvatures(pieces.repeat(count, axis=0), t.ravel())[0]))
+        tightest = kappa.reshape(t.shape).argmax(axis=1)
+        largest = max(largest, float(kappa.max()))
+        low = t[rows, np.maximum(tightest - 1, 0)]
+        high = t[rows, np.minimum(tightest + 1, count - 1)]
+    return largest
 
 
 def curvature_jump(path: Path) -> float:

@@ -31,8 +31,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.results import Results, read
-from bezierplan.running.inputs import Files
+from bezierplan.analysis.results import Results
 from bezierplan.workspaces.seeds import generator
 
 COLUMNS = (
@@ -139,20 +138,19 @@ def _gaps(values: pd.DataFrame, method: str, restarts: int) -> dict[str, float]:
 
 def of_studies(
     baselines: Mapping[str, tuple[str, str | None]],
-    repeats: Mapping[str, int],
-    files: Mapping[str, Files],
+    results: Mapping[str, Results],
     with_baseline: bool = False,
 ) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    baselines: by study, each with the method that the paper proposes. repeats, files: of
-    experiments, each by `study/experiment`.
+    baselines: by study, each with the method that the paper proposes. results: by
+    `study/experiment`.
     """
     tables = []
     for study, (baseline, proposed) in baselines.items():
         experiments = {
-            place.partition("/")[2]: read(files[place], number, place.partition("/")[2])
-            for place, number in repeats.items()
+            place.partition("/")[2]: own
+            for place, own in results.items()
             if place.startswith(f"{study}/")
         }
         rows = measured(experiments, baseline, with_baseline)
