@@ -9,7 +9,7 @@ LOCKED    = --quiet --require-hashes --only-binary :all:
 # Into the environment of an interpreter ($1), some packages ($2). uv takes a third of pip's time, but does not read pip's settings, which may name
 # another index than PyPI.
 pip       = $1 -m pip install --disable-pip-version-check $(LOCKED) $2
-install   = $(RUN) -m uv pip install --python $1 --compile-bytecode $(LOCKED) $2 2>/dev/null || $(pip)
+install   = $(RUN) -m uv pip install --python $1 $(LOCKED) $2 2>/dev/null || $(pip)
 LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes
 
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.

@@ -18,7 +18,7 @@ STUDIES = studies()
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 # Alternatives that matter only under others: how often a roadmap is drawn, where one has few links.
-UNDER = {("elhoseny2017", "O15q_100"): {"prm": {"neighbours": 1}}}
+UNDER = {("elhoseny2017", "O15q_1"): {"prm": {"neighbours": 1}}}
 
 
 def found(study, experiment, method, place=-1):

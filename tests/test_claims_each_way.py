@@ -455,6 +455,11 @@ def printed_lengths(monkeypatch, truth):
     return made, numbers | below if truth else numbers
 
 
+def loops(monkeypatch, truth):
+    rows = pd.DataFrame({"repeat": range(10), "loops": 40, "endless_loops": 38 if truth else 2})
+    return results_of(rows, "endless", method="mga_50"), None
+
+
 def swarms(monkeypatch, truth):
     rows = pd.DataFrame(
         itertools.product(range(5, 55, 5), range(20)), columns=["particles", "repeat"]
@@ -589,6 +594,7 @@ BY_HAND = {
     ("elhoseny2017", "C10"): fluctuations,
     ("elhoseny2017", "C20"): q_statistics,
     ("elhoseny2017", "C23"): printed_lengths,
+    ("elhoseny2017", "C33"): loops,
     ("tharwat2018", "C3"): swarms,
     ("tharwat2018", "C16"): surface,
     ("tharwat2018", "C17"): classes,

@@ -39,8 +39,8 @@ START = """
 import os, sys, time
 from functools import partial
 from pathlib import Path
-from bezierplan.machine import digest
-digest.KERNELS = Path("kernels").resolve()
+from bezierplan.machine import kernel_cache
+kernel_cache.FOLDERS = [Path("kernels").resolve()]
 import kernels_of_mine as mine
 from bezierplan.running.jobs.forks import compile_first
 from numba.core import event
@@ -200,12 +200,23 @@ def test_kernels_of_other_libraries_are_left_alone(tmp_path):
     assert list((tmp_path / "__pycache__").glob("foreign.twice*.nbc"))
 
 
+def test_old_kernels_leave_room_for_new_ones(tmp_path):
+    for age, name in enumerate(["today", "yesterday", "older"]):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "kernel").write_bytes(bytes(100))
+        day = time.time() - 90_000 * age
+        os.utime(tmp_path / name, (day, day))
+    for most, left in ((250, {"today", "yesterday"}), (50, {"today"})):
+        kernel_cache.remove_old(tmp_path, most)
+        assert {state.name for state in tmp_path.iterdir()} == left
+
+
 def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     (tmp_path / "kernels_of_mine.py").write_text(MODULE)
     (tmp_path / "a file").touch()
     code = (
-        "from pathlib import Path\nfrom bezierplan.machine import digest\ndigest.KERNELS = "
-        "Path('a file')\n"
+        "from pathlib import Path\nfrom bezierplan.machine import kernel_cache\n"
+        "kernel_cache.FOLDERS = [Path('a file')]\n"
     )
     code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"
     assert starts.python(code, tmp_path, tmp_path) == "42\n"

@@ -23,8 +23,7 @@ from test_claims import (
 )
 
 from bezierplan.analysis import measures
-from bezierplan.analysis.claims import effects, verdicts
-from bezierplan.analysis.claims.effects import Finding
+from bezierplan.analysis.claims import effects
 from bezierplan.analysis.numbers import baseline_comparison, comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.planners import warm_swarm
@@ -193,32 +192,6 @@ def test_an_interval_is_negligible_within_the_margin(low, high, n, negligible):
 def test_six_units_are_enough(n):
     said = judge({"checks": [LOWER | {"margin": 0.1}]}, apart(-1.0, n=n))[1].iloc[0]
     assert (said["mark"] == "+", "fewer than" in said["reason"]) == (n == 6, n == 5)
-
-
-@pytest.mark.parametrize(
-    ("number", "p", "expected"),
-    [
-        (1, 0.049, "+"),
-        (1, 0.05, "?"),
-        (2, 0.0249, "+"),
-        (2, 0.0251, "?"),
-        (8, 0.006, "+"),
-        (8, 0.0063, "?"),
-    ],
-)
-def test_p_of_one_of_several_counts_as_many_times(number, p, expected):
-    """And its interval is wider by the quotient of the normal quantiles."""
-    check = checks_of_claims.check_of(LOWER)
-    finding = Finding(effect=-1.0, low95=-2.0, high95=0.5, p=p, toward=1, margin=0.3)
-    found = verdicts.among(finding, check, number)
-    assert verdicts.mark(found, found.p) == expected
-    assert found.p == pytest.approx(number * p)
-    # Normal quantiles at 0.975, 0.9875 and 0.996875.
-    wider = {1: 1.95996398, 2: 2.24140273, 8: 2.73436878}[number] / 1.95996398
-    assert (found.low95, found.high95) == pytest.approx((-1 - wider, -1 + 1.5 * wider))
-    for margin, within in ((1.001 * wider, True), (0.999 * wider, False)):
-        narrow = Finding(effect=0.0, low95=-1.0, high95=1.0, p=1.0, margin=margin, negligible=True)
-        assert verdicts.among(narrow, check, number).negligible == (within or number == 1)
 
 
 # --------------------------------------------------------------------------------------------------

@@ -1,12 +1,10 @@
-"""What holds for all planners over the 8-connected lattice: the rivals of ma2020, with the settings
-of its environments.
-"""
+"""What holds for all planners over the 8-connected lattice: the rivals of ma2020."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
-from fields import STUDIES
 from studies import planned, study
 
 from bezierplan.geometry import checker, curves, shortest_paths
@@ -16,6 +14,7 @@ from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
+DATA = Path(__file__).parent / "data"
 COLONY = study("ma2020").resolved("aco")
 VARIANTS = {
     "aco": ("aco", {}),
@@ -38,7 +37,8 @@ def colony_rules(**changes):
 
 
 def environment(number):
-    lines = (STUDIES / f"ma2020/workspaces/environment{number}.txt").read_text().splitlines()
+    """One of two maps on which an independent program has run."""
+    lines = (DATA / f"lattice_map{number}.txt").read_text().splitlines()
     return Problem("test", from_lines(lines, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
 
 

@@ -201,7 +201,7 @@ def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended):
         file.write_bytes(sound)
     assert done.returncode == 1
     lines = [line for line in done.stderr.splitlines() if " (full account: " in line]
-    told = f"{name}: all rows: digest: stored "
+    told = f"{name}: other rows than were written"
     assert len({line for line in lines if told in line}) == 1, done.stderr
     assert not list(folder.glob(f"{TABLES}/honest*"))
 

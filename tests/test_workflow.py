@@ -230,7 +230,7 @@ EDITS = {
         "config/studies/song2016/assumptions.yaml",
         "[20, 50, 101, 401]",
         "[20, 50, 401]",
-        {"page": 1},
+        {"verified": 1, "page": 1},
     ),
 }
 
@@ -378,7 +378,7 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
             assert make.poll() is None
             time.sleep(0.05)
         (started,) = psutil.Process(make.pid).children()
-        assert started.cmdline()[1:] == ["-m", "snakemake"]
+        assert started.cmdline()[1:] == ["-m", "bezierplan", "run", "all"]
         kill(make.pid if kill is os.killpg else started.pid, signal.SIGKILL)
         assert make.wait() != 0
         time.sleep(0.5)

@@ -13,7 +13,7 @@ from typing import NoReturn
 
 import bezierplan
 from bezierplan.commands import arguments
-from bezierplan.places import EXTRA, PACKAGE, extra
+from bezierplan.places import EXTRA, PACKAGE, extra, set_kernel_target
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, closest
 
@@ -79,6 +79,7 @@ def _refuse(*lines: str) -> NoReturn:
 
 def start() -> None:
     """Do what the words of this process say."""
+    set_kernel_target()
     try:
         main(sys.argv[1:])
     except KeyboardInterrupt:

@@ -1,6 +1,7 @@
 """Where things lie: this package, the tree of studies and workflow, the folder of caches."""
 
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,9 +43,26 @@ def cache_folder() -> Path:
     """The folder of what can be made again: `.cache` in a clone that can be written, and of an
     installed package the user's own.
     """
-    if CHECKOUT and os.access(TREE, os.W_OK):
-        return TREE / ".cache"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "bezierplan"
+    return TREE / ".cache" if CHECKOUT and os.access(TREE, os.W_OK) else user_cache_folder()
+
+
+def user_cache_folder() -> Path:
+    """The folder that the platform names for a user's caches."""
+    usual = "Library/Caches" if sys.platform == "darwin" else ".cache"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / usual) / "bezierplan"
+
+
+def set_kernel_target() -> None:
+    """Let this process, and those that it starts, compile kernels for all processors of a kind
+    instead of its own, so that machines share them. numba reads this when it is imported.
+    """
+    flags = Path("/proc/cpuinfo")
+    words = flags.read_text(encoding="utf-8").split() if flags.is_file() else []
+    named = (
+        "x86-64-v3" if {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words} else "generic"
+    )
+    os.environ.setdefault("NUMBA_CPU_NAME", named)
+    os.environ.setdefault("NUMBA_CPU_FEATURES", "")
 
 
 def relative(path: Path) -> str:

@@ -72,7 +72,7 @@ CONTESTS = [
     Contest("song2016", "routes", "15_240", ("nonsmooth", "smooth"), "generations"),
     Contest("meledje", "operators", "env2_modified", ("random", "proposed"), "generations"),
     Contest("ma2020", "environments", "environment2", ("bca", "bca_q"), "generations"),
-    Contest("elhoseny2017", "maps", "hidden_u", ("mga", "mga_c"), "iterations"),
+    Contest("elhoseny2017", "maps", "hidden_u", ("mga_plain", "mga"), "iterations"),
     Contest(
         *("tharwat2018", "maps", "equal", ("pso", "cpso2_singer"), "iterations"),
         {"stall_limit": 0},

@@ -15,6 +15,10 @@ os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 
+from bezierplan.places import set_kernel_target
+
+set_kernel_target()
+
 from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown

@@ -58,7 +58,7 @@ def main(
       plan gaps --start 2,10 --target 18,10 --settings '{turning_radius: 0.3}' --out path.svg
 
     The same problem by the genetic algorithm of elhoseny2017, on cells of 0.5 m, as points:
-      plan gaps --start 2,10 --target 18,10 --method elhoseny2017/mga_c --cell 0.5 --out path.csv
+      plan gaps --start 2,10 --target 18,10 --method elhoseny2017/mga --cell 0.5 --out path.csv
 
     The path of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
     0.1 m apart:

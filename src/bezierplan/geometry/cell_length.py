@@ -1,9 +1,11 @@
 """The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a
 diagonal one (elhoseny2017, Section 4.6).
 
-The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve
-touches: a free diagonal of N cells costs 1.5 N, any other curve that is monotone in x and y about 2
-N. `cells8` leaves out the corner cells of that sequence, as line rasterisation usually does.
+The paper counts points on the curve, and does not say how near they lie. `length_by_points` counts
+points a cell apart. The nearer they lie, the more of the cells that the curve touches are counted,
+up to all of them: `cells4`, by which a free diagonal of N cells costs 1.5 N and any other curve
+that is monotone in x and y about 2 N. `cells8` leaves out the corner cells of that sequence, as
+line rasterisation usually does.
 
 In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i
 reaches from i to i + 1.
@@ -28,6 +30,11 @@ _ON_LINE = 1e-9
 # Two grid lines that a segment crosses at parameters this close are crossed at their corner.
 _IN_CORNER = 1e-6
 
+# A Bézier piece of more control points than this is cut into so many.
+HIGH, CUT = 12, 8
+# A multiple of this is the number of parts of each.
+QUARTERS = 4
+
 # Legs of a polyline whose lengths are computed together.
 _BLOCK = 64
 
@@ -37,8 +44,8 @@ _CENTRE = 1e-9
 
 @allocation_free
 def parts(points: np.ndarray) -> int:
-    """Number of equal parameter intervals over each of which a Bézier piece (degree + 1, 2), in
-    cells, moves less than one cell.
+    """Return the number of equal parameter intervals over each of which a Bézier piece (degree + 1,
+    2), in cells, moves less than one cell.
 
     The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
     degree times the longest leg of its polygon.
@@ -53,7 +60,26 @@ def parts(points: np.ndarray) -> int:
         longest = max(longest, leg)
     if degree == 1:
         return max(1, math.ceil(2.0 * total))
-    return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+    count = math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+    return count if degree < HIGH else -(-count // QUARTERS) * QUARTERS
+
+
+@allocation_free
+def cut(pieces: np.ndarray, points: int) -> None:
+    """Cut a Bézier piece of so many control points, the first of some (2**k, points or more, 2),
+    into all of them, of equal length in its parameter, in place (de Casteljau).
+    """
+    step = len(pieces) // 2
+    while step > 0:
+        for k in range(0, len(pieces), 2 * step):
+            left, right = pieces[k].reshape(-1), pieces[k + step].reshape(-1)  # x, y, x, y, ...
+            for i in range(2 * points):
+                right[i] = left[i]
+            for level in range(1, points):
+                for i in range(2 * (points - level)):
+                    right[i] = 0.5 * (right[i] + right[i + 2])
+                left[2 * level], left[2 * level + 1] = right[0], right[1]
+        step //= 2
 
 
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
@@ -61,6 +87,23 @@ def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
     x, y, t, power = np.empty((4, last + 1))
     write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
+
+
+def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
+    degree + 1, 2). A piece of high degree is cut, for its polygon zigzags too much to tell how fast
+    it is.
+    """
+    points = curve.shape[1]
+    xs, ys = [], []
+    for piece in curve:
+        shorter = np.repeat(piece[None], CUT if points > HIGH else 1, axis=0)
+        cut(shorter, points)
+        for each in shorter:
+            x, y = sample(each, parts(each))
+            xs.append(x)
+            ys.append(y)
+    return np.concatenate(xs), np.concatenate(ys)
 
 
 @allocation_free
@@ -269,10 +312,27 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
-    xs, ys = zip(
-        *(sample(piece, parts(piece)) for piece in grid.in_cells(curves.bezier_pieces(path)))
+    return walk(grid.in_cells(curves.bezier_pieces(path)))
+
+
+def length_by_points(path: Path, grid: Grid) -> float:
+    """Return the length of a path, in units, that counts points of equal distance along it, at most
+    a cell apart: a step from the cell of one to a neighbouring cell counts 1, a diagonal one 1.5.
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> field = from_lines(["....", "...."], cell=1.0, unit="m")
+    >>> length_by_points(Path("polyline", np.array([[0.5, 0.5], [2.5, 0.5], [3.5, 1.5]])), field)
+    3.5
+    """
+    walked = np.column_stack(samples(path, grid))
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(walked, axis=0).T))])
+    wanted = np.linspace(0.0, at[-1], math.ceil(at[-1]) + 1)
+    points = np.column_stack([np.interp(wanted, at, along) for along in walked.T])
+    steps = np.abs(np.diff(np.floor(points), axis=0))
+    return (
+        float((STRAIGHT * steps.max(axis=1) + (DIAGONAL - STRAIGHT) * steps.min(axis=1)).sum())
+        * grid.cell
     )
-    return np.concatenate(xs), np.concatenate(ys)
 
 
 def length4(path: Path, grid: Grid) -> float:

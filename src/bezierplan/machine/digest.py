@@ -271,12 +271,8 @@ def content_digest(*files: str) -> str:
     ).hexdigest()[:16]
 
 
-KERNELS = cache_folder() / "kernels"
-"""Folder of the compiled kernels of all modules."""
-
-
 @cache
-def kernel_folder(module: str, file: str) -> Path:
-    """The folder of compiled kernels for the current state of a module, ours or the user's."""
+def state_of(module: str, file: str) -> str:
+    """Return a name of the current state of a module, ours or the user's."""
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None
-    return KERNELS / f"{Path(file).stem}-{source_digest(module if ours else file)}"
+    return f"{Path(file).stem}-{source_digest(module if ours else file)}"

@@ -1,6 +1,6 @@
-"""Where compiled kernels of this package lie: one folder for each state of the code from which a
-kernel is compiled. Of several processes that need the same kernel at the same time, one compiles
-it, and the others wait for it.
+"""Where compiled kernels of this package lie: with the user, for all clones, one folder for each
+state of the code from which a kernel is compiled. Of several processes that need the same kernel at
+the same time, one compiles it, and the others wait for it.
 
 Only functions that `bezierplan.kernels` decorates are kept here. numba's own classes and settings
 stay as they are, so other libraries in the same process keep their compiled functions where they
@@ -13,6 +13,8 @@ import gc
 import inspect
 import logging
 import math
+import platform
+import shutil
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,6 +23,8 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any, ClassVar
 
+import llvmlite
+import numba
 from numba.core.caching import (
     CompileResultCacheImpl,
     FunctionCache,
@@ -32,7 +36,14 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
-from bezierplan.machine.digest import kernel_folder
+from bezierplan.machine.digest import state_of
+from bezierplan.places import cache_folder, user_cache_folder
+
+_VERSIONS = (platform.python_version(), numba.__version__, llvmlite.__version__)
+FOLDERS = [user_cache_folder() / "-".join(["kernels", *_VERSIONS]), cache_folder() / "kernels"]
+"""Folders of the compiled kernels of all modules: the first one that can be written."""
+MOST_BYTES = 500_000_000
+_DAY = 86_400.0
 
 # Seconds between two looks at whether another process still compiles, and how long a process waits
 # that holds a lock itself. A kernel calls kernels of modules that its own imports, so locks are
@@ -146,9 +157,11 @@ class Kernel(CPUDispatcher):
 
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
-        folder = kernel_folder(self.py_func.__module__, inspect.getfile(self.py_func))
-        if _can_be_written(folder):
-            self._cache = KernelCache(self.py_func, folder)
+        state = state_of(self.py_func.__module__, inspect.getfile(self.py_func))
+        for folder in FOLDERS:
+            if _can_be_written(folder / state):
+                self._cache = KernelCache(self.py_func, folder / state)
+                return
 
     def compile(self, sig: Any) -> Any:
         """Load the kernel, or compile and keep it, for one process at a time where it has to
@@ -166,8 +179,26 @@ class Kernel(CPUDispatcher):
                 return super().compile(sig)
             _tell()
             folder = Path(self._cache.cache_path)
+            with contextlib.suppress(OSError):  # another process may remove them too
+                remove_old(folder.parent, MOST_BYTES)
             with _alone(folder, self.locks), _rare_garbage_collection():
                 return super().compile(sig)
+
+
+@cache
+def remove_old(folder: Path, most: int) -> None:
+    """Remove the kernels that were compiled first, of those that are older than a day, until a
+    folder has at most so many bytes.
+    """
+    sizes = {
+        state: sum(file.stat().st_size for file in state.iterdir())
+        for state in sorted(folder.iterdir(), key=lambda state: state.stat().st_mtime)
+    }
+    total = sum(sizes.values())
+    for state, size in sizes.items():
+        if total > most and time.time() - state.stat().st_mtime > _DAY:
+            shutil.rmtree(state, ignore_errors=True)
+            total -= size
 
 
 @cache

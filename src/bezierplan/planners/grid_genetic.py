@@ -2,9 +2,10 @@
 competing GA of elhoseny2017).
 
 The baseline called GA in Tables 2, 3 and 6 of elhoseny2017 (Alajlan et al., 2013), which gives no
-parameters or operators; these are common ones. First paths are greedy walks through random cells. A
-crossover joins the head of one path and the tail of another at a shared cell; a mutation makes a
-new walk between two cells of a path. Loops are removed from every path.
+parameters or operators; these are common ones. First paths are greedy walks through random cells,
+which step back out of dead ends. A crossover joins the head of one path and the tail of another at
+a shared cell; a mutation makes a new walk between two cells of a path. Loops are removed from every
+path.
 
 A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a
 cell is its index in the grid with a frame of occupied cells around it, so that no step leaves the
@@ -24,21 +25,12 @@ from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
-extra = ("first_walks",)
 workspaces = ("grid",)
 exact = True
 
 # Steps of column and row to the eight neighbours, straight ones first.
 _COLUMN_STEPS = (1, 0, -1, 0, 1, -1, -1, 1)
 _ROW_STEPS = (0, 1, 0, -1, 1, 1, -1, -1)
-
-# First walks tried for each chromosome; missing ones are copies of those found.
-_ATTEMPTS = 40
-# Steps after which a walk is abandoned, as a multiple of rows + columns.
-_LONGEST_WALK = 6
-# Where no free neighbour is nearer to the goal: fewest random steps, most of them as a share of the
-# columns, and the probability that a random step keeps the direction, if that cell is free.
-_LEAST_DETOUR, _DETOUR_SHARE, _STRAIGHT_ON = 3, 0.125, 0.8
 
 
 class Settings(NamedTuple):
@@ -62,10 +54,11 @@ class Settings(NamedTuple):
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Cheapest path of cells found, a polyline through their centres.
+    """Return the cheapest path of cells found, a polyline through their centres.
 
-    A walk goes to the free neighbour nearest to its goal, but for random steps. The best of parents
-    and children survive.
+    A walk goes to that free neighbour which it has not visited and which is nearest to its goal,
+    but for random steps; where there is none it steps back. The best of parents and children
+    survive.
 
     Parameters
     ----------
@@ -77,8 +70,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its cost in units, infinite if there is no path. Extra column: first_walks,
-        the number of first paths found.
+        Its objective is its cost in units, infinite if there is no path.
 
     References
     ----------
@@ -90,23 +82,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     (start_column, target_column), (start_row, target_row) = (
         np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     )
-    rows, columns = grid.occupied.shape
-    walker = _Walker(
-        walls=walls.ravel(),
-        columns=walls.shape[1],
-        longest_walk=_LONGEST_WALK * (rows + columns),
-        most_detour=max(_LEAST_DETOUR, _LEAST_DETOUR - 1 + int(_DETOUR_SHARE * columns)),
-        random_step=settings.random_step,
-    )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
     start = start_row * walls.shape[1] + start_column
     target = target_row * walls.shape[1] + target_column
-    cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
+    cells, history = _search(*rng.spawn(2), walls.ravel(), walls.shape[1], start, target, settings)
     history *= grid.cell
-    extra = {"first_walks": int(found)}
-    if found == 0:
-        return Plan.of_one(None, np.inf, "no way", extra)
+    if len(cells) == 0:
+        return Plan.of_one(None, np.inf, "no way")
     row, column = np.divmod(cells, walls.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(
@@ -116,7 +99,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         evaluations=settings.population * len(history),
         history=history,
         stop="generations",
-        extra=extra,
+        extra={},
     )
 
 
@@ -142,36 +125,35 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on. walls: bool (cells,), the framed grid row by row; columns: of the
-    framed grid. longest_walk: in steps; most_detour: steps of a detour, inclusive.
+    """What a walk depends on, and scratch. walls: bool (cells,), the framed grid row by row;
+    columns: of the framed grid. visits: (cells,) the number of the last walk that visited a cell,
+    or of all walks for cell 0, which is a wall. last_visit: (cells,) of `_cut_loops`.
     """
 
     walls: np.ndarray
     columns: int
-    longest_walk: int
-    most_detour: int
     random_step: float
+    visits: np.ndarray
+    last_visit: np.ndarray
 
 
 @compiled
-def _search(walks_rng, moves_rng, walker, start, target, rules):
-    """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far
-    (generations + 1,).
+def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
+    """Return the cells (n,) of the cheapest path, none if there is no way, and the lowest cost so
+    far (generations + 1,).
     """
-    size, columns, population = len(walker.walls), walker.columns, rules.population
-    # A path visits a cell once; before its loops are removed, a child consists of at most two paths
-    # and a walk.
-    walk = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64)
-    last_visit = np.empty(size, dtype=np.int64)
+    size, population = len(walls), rules.population
+    walker = _Walker(
+        walls, columns, rules.random_step, np.zeros(size, np.int64), np.empty(size, np.int64)
+    )
+    # A path or a walk visits a cell once; before its loops are removed, a child consists of at most
+    # two paths and a walk.
+    walk = np.empty(3 * size, dtype=np.int64)
     index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
-    paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)
-    founders = len(paths)
-    if founders == 0:
-        return np.empty(0, dtype=np.int64), founders, np.full(1, np.inf)
-    for i in range(founders, population):
-        paths.append(paths[i % founders])
-        costs[i] = costs[i % founders]
+    paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk)
+    if len(paths) == 0:
+        return np.empty(0, dtype=np.int64), np.full(1, np.inf)
     paths, costs = _best(paths, costs, population)
     history = np.empty(rules.generations + 1)
     history[0] = costs[0]
@@ -185,14 +167,14 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
                 count = _join(moves_rng, head, tail, index, common, walk)
             if count == 0:
                 count = put(head, walk, 0)
-            count = _cut_loops(walk, count, last_visit)
+            count = _cut_loops(walk, count, walker.last_visit)
             if moves_rng.random() < rules.mutation_probability and count > 1:
-                count = _walk_anew(moves_rng, walker, walk, count, last_visit)
+                count = _walk_anew(moves_rng, walker, walk, count)
             paths.append(walk[:count].copy())
             costs[population + i] = _cost(walk, count, columns, rules.diagonal_cost)
         paths, costs = _best(paths, costs, population)
         history[generation + 1] = costs[0]
-    return paths[0], founders, history
+    return paths[0], history
 
 
 @compiled
@@ -208,95 +190,60 @@ def _best(paths, costs, population):
 
 
 @compiled
-def _first_walks(rng, walker, start, target, rules, walk, last_visit):
-    """Up to `population` paths, and their costs (2 population,): the first one directly to the
-    target, the others through a free cell.
+def _first_walks(rng, walker, start, target, rules, walk):
+    """Return `population` paths, and their costs (2 population,): the first one directly to the
+    target, the others through a free cell that can be reached; none if the target cannot.
     """
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
-    for attempt in range(_ATTEMPTS * rules.population):
-        if len(paths) == rules.population:
-            break
-        walk[0] = start
-        count = 1
-        if attempt > 0:
+    while len(paths) < rules.population:
+        walk[0], count = start, 1
+        if len(paths) > 0:
             way = integer(rng, 0, len(walker.walls))
             while walker.walls[way]:
                 way = integer(rng, 0, len(walker.walls))
-            count = _extend(rng, walker, walk, count, way)
+            count = _extend(rng, walker, walk, 1, way)
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
         if count > 0:
-            count = _cut_loops(walk, count, last_visit)
+            count = _cut_loops(walk, count, walker.last_visit)
             costs[len(paths)] = _cost(walk, count, walker.columns, rules.diagonal_cost)
             paths.append(walk[:count].copy())
+        elif len(paths) == 0:
+            break
     return paths, costs
 
 
 @allocation_free
 def _extend(rng, walker, walk, count, goal):
     """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0
-    if the walk becomes too long or cannot move.
+    if there is no way.
     """
-    walls, columns = walker.walls, walker.columns
-    end = count + walker.longest_walk
-    goal_row, goal_column = goal // columns, goal % columns
-    cell = walk[count - 1]
-    row, column = cell // columns, cell % columns
-    step = -1  # the last step taken
-    detour = 0
-    while cell != goal:
-        if count == end:
-            return 0
-        if detour == 0 and walker.random_step > 0 and rng.random() < walker.random_step:
-            detour, step = 1, -1
-        if detour == 0:
-            nearest = (goal_row - row) ** 2 + (goal_column - column) ** 2
-            nearer = -1
-            for k in range(8):
-                distance = (goal_row - row - _ROW_STEPS[k]) ** 2 + (
-                    goal_column - column - _COLUMN_STEPS[k]
-                ) ** 2
-                if (
-                    distance < nearest
-                    and not walls[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
-                ):
-                    nearest = distance
-                    nearer = k
-            if nearer < 0:
-                detour = integer(rng, _LEAST_DETOUR, walker.most_detour + 1)
-            else:
-                step = nearer
-        if detour > 0:
-            detour -= 1
-            blocked = step < 0 or walls[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
-            if blocked or rng.random() >= _STRAIGHT_ON:
-                step = _random_step(rng, walls, columns, cell)
-                if step < 0:
-                    return 0
-        row += _ROW_STEPS[step]
-        column += _COLUMN_STEPS[step]
-        cell = row * columns + column
-        walk[count] = cell
+    walls, columns, visits = walker.walls, walker.columns, walker.visits
+    first = count
+    visits[0] += 1
+    visits[walk[count - 1]] = visits[0]
+    while count >= first and walk[count - 1] != goal:
+        cell = walk[count - 1]
+        row, column = goal // columns - cell // columns, goal % columns - cell % columns
+        random = walker.random_step > 0 and rng.random() < walker.random_step
+        best, chosen, seen = np.inf, -1, 0
+        for k in range(8):
+            other = cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]
+            if walls[other] or visits[other] == visits[0]:
+                continue
+            seen += 1
+            away = (row - _ROW_STEPS[k]) ** 2 + (column - _COLUMN_STEPS[k]) ** 2
+            if (integer(rng, 0, seen) == 0) if random else (away < best):
+                best, chosen = away, other
+        if chosen < 0:
+            count -= 1
+            continue
+        visits[chosen] = visits[0]
+        walk[count] = chosen
         count += 1
-    return count
-
-
-@allocation_free
-def _random_step(rng, walls, columns, cell):
-    """A random step to a free neighbour of a cell, -1 if it has none."""
-    free = 0
-    for k in range(8):
-        free += not walls[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
-    if free == 0:
-        return -1
-    left = integer(rng, 0, free)
-    step = -1
-    while left >= 0:
-        step += 1
-        left -= not walls[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
-    return step
+    return count if count >= first else 0
 
 
 @allocation_free
@@ -340,9 +287,9 @@ def _join(rng, head, tail, index, common, walk):
 
 
 @allocation_free
-def _walk_anew(rng, walker, path, count, last_visit):
-    """Replace the section between two random cells of a path by a new walk, in place; a failed walk
-    changes nothing.
+def _walk_anew(rng, walker, path, count):
+    """Replace the section between two random cells of a path by a new walk, in place; returns the
+    new number of cells.
     """
     one = integer(rng, 0, count)
     other = integer(rng, 0, count - 1)
@@ -352,10 +299,8 @@ def _walk_anew(rng, walker, path, count, last_visit):
     # forward.
     path[count] = path[first]
     end = _extend(rng, walker, path, count + 1, path[last])
-    if end == 0:
-        return count
     end = put(path[last + 1 : count], path, end)
-    return _cut_loops(path, put(path[count + 1 : end], path, first + 1), last_visit)
+    return _cut_loops(path, put(path[count + 1 : end], path, first + 1), walker.last_visit)
 
 
 @allocation_free

@@ -8,9 +8,9 @@ touches an occupied cell is deleted and replaced by a random one (Section 3.2.2)
 plain algorithm the paper monitors the Q statistic of the pool (Section 3.3). In the kernels
 coordinates and lengths are in cells.
 
-In a maze the algorithm as printed finds no path. To make that possible, the first population can
-come from small roadmaps, control points can be joined in the order in which a walk from the start
-reaches them, and a mutation can shift a control point; none of this is in the paper.
+The paper says neither in which order control points are joined nor how many a random chromosome
+has. Here they are joined in the order in which a walk over free cells reaches them, and random
+chromosomes get more of them on a map on which few do not get through.
 """
 
 import math
@@ -25,24 +25,28 @@ from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import (
     MOST_POINTS,
     CurveKind,
-    FitnessLength,
     Scratch,
     scratch_for,
     validate,
 )
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
-from bezierplan.planners.parts.genetic import check_pairs, same
+from bezierplan.planners.parts.genetic import check_pairs, copy, same
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
-extra = ("distinct_chromosomes", "mean_q", "population_q", "extra_batches", "valid_share")
+extra = (
+    "distinct_chromosomes",
+    "mean_q",
+    "population_q",
+    "loops",
+    "endless_loops",
+    "extra_batches",
+    "valid_share",
+)
 workspaces = ("grid",)
 
 PAPER = "elhoseny2017"
-
-PATH_KINDS = {CurveKind.single: "bezier", CurveKind.composite: "piecewise_quadratic"}
 
 # Capacity of a list of genes: a crossover of two chromosomes yields at most twice as many.
 _ROOM = 2 * MOST_POINTS + 1
@@ -50,18 +54,12 @@ _ROOM = 2 * MOST_POINTS + 1
 # Cost of a chromosome that fills a place in the first population because no valid one was found.
 _UNFIT = 1e9
 
-Mutation = IntEnum("Mutation", "gene shift", start=0)
 Diversity = IntEnum("Diversity", "none more_offspring relaxing unique", start=0)
 GeneLattice = IntEnum("GeneLattice", "coarse cell", start=0)
 PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
-FirstPopulation = IntEnum("FirstPopulation", "random roadmaps", start=0)
 
-# Most roadmaps for the first population, their random nodes, and nearest nodes that a node may be
-# linked with.
-_ROADMAPS, _NODES, _NEIGHBOURS = 180, 250, 8
-
-# A shift moves a control point by at most this share of the lattice points of a side.
-_SHIFT_REACH = 0.1
+# Invalid draws in a row after which random chromosomes get up to twice as many control points.
+_BARREN = 400
 
 
 class Settings(NamedTuple):
@@ -74,16 +72,10 @@ class Settings(NamedTuple):
     crossover_probability: Annotated[
         float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4.2")
     ]
-    mutation: Annotated[
-        Mutation,
-        About(
-            "each gene changes, or a chromosome loses, gains or has shifted a control point (shift)"
-        ),
-    ]
     mutation_rate: Annotated[
         float,
         Range(0, 1),
-        About("probability that a gene or chromosome mutates", PAPER + ", Section 4.2"),
+        About("probability that a gene changes", PAPER + ", Section 4.2"),
     ]
     diversity: Annotated[
         Diversity,
@@ -111,15 +103,13 @@ class Settings(NamedTuple):
             "gene, or by distance over free cells"
         ),
     ]
-    first_population: Annotated[
-        FirstPopulation,
-        About(
-            "random chromosomes, or before them the inner nodes of paths through roadmaps",
-            PAPER + ", Section 3.2.1, the random one",
-        ),
-    ]
     first_points: Annotated[int, Range(1), About("most control points of a random chromosome")]
-    first_draws: Annotated[int, Range(1), About("draws for each member of the first population")]
+    most_points: Annotated[
+        int,
+        Range(1, MOST_POINTS),
+        About(f"likewise, doubled up to this after each {_BARREN} invalid draws in a row"),
+    ]
+    first_draws: Annotated[int, Range(1), About("most draws for the first population")]
     replacements: Annotated[
         int, Range(0), About("draws for an invalid child", PAPER + ", Section 3.2.2")
     ]
@@ -131,16 +121,8 @@ class Settings(NamedTuple):
     curve: Annotated[
         CurveKind,
         About(
-            "one Bézier curve, or quadratic pieces that meet half-way between the control points",
-            PAPER + ", eq. 2",
-        ),
-    ]
-    fitness_length: Annotated[
-        FitnessLength,
-        About(
-            "length whose reciprocal is the fitness: sampled, or counted over cells "
-            "(`cell_length.cells4`)",
-            PAPER + ", eqs. 8, 9",
+            "one Bézier curve, or a chain of cubic ones that meet with equal curvature",
+            PAPER + ", eq. 2 or Section 2.1",
         ),
     ]
 
@@ -150,9 +132,10 @@ class Outcome(NamedTuple):
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
     chromosomes in the population. q: (iterations,) mean Q of the pool at the end of an iteration,
-    where requested. population_q: (iterations,) mean Q of the chromosomes that survive it. batches:
-    number of extra batches of offspring. evaluations: number of chromosomes validated. valid_share:
-    share of valid children.
+    where requested. population_q: (iterations + 1,) mean Q of the population. loops: iterations
+    whose pool is so alike that more offspring are made; endless: those of them that end at the cap.
+    batches: number of extra batches of offspring. evaluations: number of chromosomes validated.
+    valid_share: share of valid children.
     """
 
     ones: np.ndarray
@@ -161,6 +144,8 @@ class Outcome(NamedTuple):
     distinct: np.ndarray
     q: np.ndarray
     population_q: np.ndarray
+    loops: int
+    endless: int
     batches: int
     evaluations: int
     valid_share: float
@@ -169,15 +154,10 @@ class Outcome(NamedTuple):
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings)
-    if settings["first_points"] > MOST_POINTS:
+    if settings["first_points"] > settings["most_points"]:
         raise ValueError(
-            f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control "
-            "points between its ends"
-        )
-    if settings["first_population"] == "roadmaps" and settings["gene_lattice"] != "cell":
-        raise ValueError(
-            f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs "
-            "cell: their nodes lie anywhere"
+            f"first_points: {settings['first_points']}; at most {settings['most_points']}, the "
+            "setting most_points"
         )
 
 
@@ -202,7 +182,8 @@ def plan(
     Plan
         `claimed_feasible`: no cell that the sampled curve touches is occupied. Extra columns:
         distinct_chromosomes in the population and mean_q of the pool and population_q of the
-        survivors, averaged over the iterations; extra_batches of offspring; valid_share of the
+        survivors, averaged over the iterations; loops, the iterations that make extra_batches of
+        offspring, and endless_loops, those that make as many as they may; valid_share of the
         children.
 
     References
@@ -212,7 +193,8 @@ def plan(
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
-        nothing = dict.fromkeys(extra, math.nan) | {"distinct_chromosomes": 0.0, "extra_batches": 0}
+        nothing = dict.fromkeys(extra, math.nan) | dict.fromkeys(extra[:1], 0.0)
+        nothing |= dict.fromkeys(("loops", "endless_loops", "extra_batches"), 0)
         return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
@@ -222,18 +204,14 @@ def plan(
         GeneLattice(settings.gene_lattice).name,
         PointOrder(settings.point_order).name,
     )
-    first, counts = _from_roadmaps(problem, rng, field, settings)
-    if last is not None:
-        known = genes_at(grid.in_cells(last), field)
-        row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
-        first = np.vstack([row, first])[: settings.population]
-        counts = np.append(len(known), counts)[: settings.population]
-    result = search(rng, field, settings, first, counts, scratch_for(field))
+    known = np.empty(0, np.int64) if last is None else genes_at(grid.in_cells(last), field)
+    result = search(rng, field, settings, known, scratch_for(field))
     solved = len(result.ones) > 0
     points = grid.in_units(polygon(result.ones, field))
     points[[0, -1]] = problem.start, problem.target
+    chained = settings.curve == CurveKind.chain and len(points) > 3
     return Plan(
-        path=Path(PATH_KINDS[CurveKind(settings.curve)], points) if solved else None,
+        path=Path("piecewise_cubic" if chained else "bezier", points) if solved else None,
         objective=result.cost * grid.cell,
         claimed_feasible=solved,
         evaluations=result.evaluations,
@@ -242,7 +220,9 @@ def plan(
         extra={
             "distinct_chromosomes": float(result.distinct.mean()),
             "mean_q": float(result.q.mean()),
-            "population_q": float(result.population_q.mean()),
+            "population_q": float(result.population_q[1:].mean()),
+            "loops": result.loops,
+            "endless_loops": result.endless,
             "extra_batches": result.batches,
             "valid_share": result.valid_share,
         },
@@ -260,70 +240,39 @@ def resume(
     return found, found.path.points[1:-1] if found.claimed_feasible else last
 
 
-def _from_roadmaps(
-    problem: Problem, rng: np.random.Generator, field: Field, settings: Settings
-) -> tuple[np.ndarray, np.ndarray]:
-    """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and
-    their numbers of ones; straight and too long paths are left out. Every cell is a gene.
-    """
-    ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
-    for _ in range(_ROADMAPS if settings.first_population == FirstPopulation.roadmaps else 0):
-        if len(counts) == settings.population:
-            break
-        _, way, _ = roadmap(problem, rng, _NODES, _NEIGHBOURS)
-        column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
-        genes = np.unique(column * field.places[0] + row)
-        genes = genes[field.settable[genes]]
-        if 0 < len(genes) <= MOST_POINTS:
-            ones[len(counts), : len(genes)] = genes
-            counts.append(len(genes))
-    return ones[: len(counts)], np.array(counts, dtype=np.int64)
-
-
 @compiled
 def search(
-    rng: np.random.Generator,
-    field: Field,
-    rules: Settings,
-    first: np.ndarray,
-    counts: np.ndarray,
-    scratch: Scratch,
+    rng: np.random.Generator, field: Field, rules: Settings, known: np.ndarray, scratch: Scratch
 ) -> Outcome:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
-    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their
-    numbers of ones. scratch: `scratch_for` the field.
+    known: the genes that are 1 in a chromosome with which the first population begins; if there are
+    none, all are random. scratch: `scratch_for` the field.
     """
-    batches = 1 + (rules.most_batches if rules.diversity == Diversity.more_offspring else 0)
+    watched = rules.diversity == Diversity.more_offspring
     size = rules.population
     children = 4 * (size // 2)
-    pool = gene_lists.empty_pool(size + batches * children, _ROOM)
+    places = size + (1 + rules.most_batches * watched) * children
+    pool, kinds = (
+        gene_lists.empty_pool(places, _ROOM),
+        gene_lists.empty_kinds(places, len(field.points)),
+    )
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
-    q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)
+    q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations + 1)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
-    further = evaluations = births = losses = 0
+    loops = endless = batches = births = losses = 0
 
-    for row in range(size):
-        for _ in range(rules.first_draws):
-            if row < len(first):
-                count = counts[row]
-                for k in range(count):  # an assignment to a slice takes seconds to compile
-                    child[k] = first[row, k]
-            else:
-                count = _random_chromosome(rng, child, field, rules)
-            cost = validate(child[:count], field, rules, np.inf, scratch)
-            evaluations += 1
-            if cost < np.inf or row < len(first):
-                break
-        gene_lists.put(child, count, min(cost, _UNFIT), pool, row)
+    most, evaluations = _fill_population(rng, known, child, pool, field, rules, scratch)
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
         for row in range(size):
             if pool.cost[row] < min(best_cost, _UNFIT):
                 best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
-        distinct[iteration] = gene_lists.kinds_of(pool, size)[0]
+        count = gene_lists.count_kinds(pool, 0, size, 0, kinds)
+        distinct[iteration] = count
+        population_q[iteration] = gene_lists.mean_q(kinds, count, size)
         if iteration == rules.iterations:
             break
 
@@ -331,27 +280,24 @@ def search(
         # A child that costs more than any parent does not survive, so nobody needs to know by how
         # much; unless equal chromosomes are told by their costs.
         limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
-        fill, pairs = size, 0.0
-        for batch in range(batches):
+        fill, extra_batches, alike = size, -1, True
+        while alike and extra_batches < rules.most_batches * watched:
             before = fill
             fill, tries, invalid = _add_offspring(
-                rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch
+                rng, pool, before, wheel, eta, limit, child, memory, most, field, rules, scratch
             )
             evaluations += tries
             births += children
             losses += invalid
-            further += batch > 0
-            if rules.diversity == Diversity.more_offspring:
-                pairs += gene_lists.sum_of_q(
-                    pool, before if batch > 0 else 0, fill, len(field.points)
-                )
-                q[iteration] = pairs / (fill * (fill - 1) / 2)
-                if not q[iteration] > eta:
-                    break
+            extra_batches += 1
+            if watched:
+                count = gene_lists.count_kinds(pool, before, fill, count, kinds)
+                q[iteration] = gene_lists.mean_q(kinds, count, fill)
+                alike = q[iteration] > eta
+        batches += extra_batches
+        loops += extra_batches > 0
+        endless += alike and extra_batches > 0
         gene_lists.select(pool, size, fill)
-        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
-            size * (size - 1) / 2
-        )
         eta *= rules.eta_decay
     return Outcome(
         best,
@@ -360,14 +306,45 @@ def search(
         distinct,
         q,
         population_q,
-        further,
+        loops,
+        endless,
+        batches,
         evaluations,
         1.0 - losses / births,
     )
 
 
 @allocation_free
-def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rules, scratch):
+def _fill_population(rng, known, child, pool, field, rules, scratch):
+    """Draw the first population: a place gets the first valid chromosome, or, after `_BARREN` draws
+    with as many control points as there may be, one that never counts if another place is filled.
+
+    Returns the most control points that a random chromosome has from now on, and the number of
+    chromosomes validated.
+    """
+    most, evaluations, found = rules.first_points, 0, False
+    for place in range(rules.population):
+        barren, cost = 0, np.inf
+        while cost == np.inf and evaluations < rules.first_draws:
+            if place == 0 and evaluations == 0 and len(known) > 0:
+                copy(known, child)
+                count = len(known)
+            else:
+                count = _random_chromosome(rng, child, field.choices, most)
+            cost = validate(child[:count], field, rules, np.inf, scratch)
+            evaluations += 1
+            barren += 1
+            if barren % _BARREN == 0 and cost == np.inf:
+                if found:
+                    break
+                most = min(2 * most, rules.most_points)
+        found = found or cost < np.inf
+        gene_lists.put(child, count, min(cost, _UNFIT), pool, place)
+    return most, evaluations
+
+
+@allocation_free
+def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, field, rules, scratch):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after
     those already in it.
 
@@ -382,19 +359,24 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rul
         cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(2):
-                count = gene_lists.cross(pool, head, tail if crossed else head, cut, child)
+                count = gene_lists.cross(
+                    pool, head, tail if crossed else head, cut, field.index, child
+                )
                 if mutated:
-                    count = _mutate(rng, child, count, field, rules)
+                    count = _mutate(rng, child, count, field.settable, rules.mutation_rate)
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
-                        count = _random_chromosome(rng, child, field, rules)
+                        count = _random_chromosome(rng, child, field.choices, most)
                     cost = _validated(child[:count], memory, field, rules, limit, scratch)
                     tries += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
                         break
-                if cost < np.inf and not _is_too_alike(
-                    child[:count], cost, pool, fill, eta, field, rules
+                if cost < np.inf and not (
+                    rules.diversity > Diversity.more_offspring
+                    and _is_too_alike(
+                        child[:count], cost, pool, fill, eta, len(field.points), rules.diversity
+                    )
                 ):
                     gene_lists.put(child, count, cost, pool, fill)
                     fill += 1
@@ -432,74 +414,39 @@ def _parents(rng, wheel):
 
 
 @allocation_free
-def _mutate(rng, child, count, field, rules):
+def _mutate(rng, child, count, settable, rate):
     """Change random genes, except those that must not be set; returns how many are 1."""
-    genes = len(field.points)
-    if rules.mutation == Mutation.gene:
-        # From one gene that changes to the next: the gaps of independent trials of equal
-        # probability.
-        unchanged = math.log1p(-rules.mutation_rate) if rules.mutation_rate < 1.0 else -np.inf
-        gene = gene_lists.gap(rng, unchanged)
-        while gene < genes:
-            if field.settable[gene]:
-                count = gene_lists.flip(child, count, gene)
-            gene += 1 + gene_lists.gap(rng, unchanged)
-    elif rng.random() < rules.mutation_rate:
-        count = _change_point(rng, child, count, field)
+    # From one gene that changes to the next: the gaps of independent trials of equal probability.
+    unchanged = math.log1p(-rate) if rate < 1.0 else -np.inf
+    gene = gene_lists.gap(rng, unchanged)
+    while gene < len(settable):
+        if settable[gene]:
+            count = gene_lists.flip(child, count, gene)
+        gene += 1 + gene_lists.gap(rng, unchanged)
     return count
 
 
 @allocation_free
-def _change_point(rng, child, count, field):
-    """Remove a control point (unless it is the only one), add one, or shift one, each with equal
-    probability; returns how many there are.
-    """
-    change = integer(rng, 0, 3)
-    if change == 1:
-        gene = field.choices[integer(rng, 0, len(field.choices))]
-        return (
-            gene_lists.flip(child, count, gene)
-            if gene_lists.position(child, count, gene) == count
-            else count
-        )
-    if count == 0:
-        return count
-    gene = child[integer(rng, 0, count)]
-    if change == 0:
-        return gene_lists.flip(child, count, gene) if count > 1 else count
-    side, lines, places = field.places
-    reach = int(_SHIFT_REACH * side)
-    line = min(max(gene // side + integer(rng, -reach, reach + 1), 0), lines - 1)
-    place = min(max(gene % side + integer(rng, -reach, reach + 1), 0), places - 1)
-    shifted = line * side + place
-    if field.settable[shifted] and gene_lists.position(child, count, shifted) == count:
-        count = gene_lists.flip(child, count, gene)
-        count = gene_lists.flip(child, count, shifted)
-    return count
-
-
-@allocation_free
-def _random_chromosome(rng, child, field, rules):
-    """Write a chromosome of 1 to `first_points` random genes; returns how many."""
-    wanted = min(integer(rng, 1, rules.first_points + 1), len(field.choices))
+def _random_chromosome(rng, child, choices, most):
+    """Write a chromosome of 1 to `most` random genes; returns how many."""
+    wanted = min(integer(rng, 1, most + 1), len(choices))
     count = 0
     while count < wanted:
-        gene = field.choices[integer(rng, 0, len(field.choices))]
-        if gene_lists.position(child, count, gene) == count:
-            count = gene_lists.flip(child, count, gene)
+        gene = choices[integer(rng, 0, len(choices))]
+        place = gene_lists.place_of(child, count, gene)
+        if place == count or child[place] != gene:
+            count = gene_lists.insert(child, count, place, gene)
     return count
 
 
 @allocation_free
-def _is_too_alike(ones, cost, pool, fill, eta, field, rules):
-    """Whether a diversity rule rejects a child (Section 3.3)."""
-    if rules.diversity == Diversity.unique:
-        for i in range(fill):
-            if cost == pool.cost[i] and same(ones, pool.ones[i, : pool.count[i]]):
-                return True
-    if rules.diversity == Diversity.relaxing:
-        total = 0.0
-        for i in range(fill):
-            total += gene_lists.q(ones, pool.ones[i, : pool.count[i]], len(field.points))
-        return total > (1.0 - eta) * fill
-    return False
+def _is_too_alike(ones, cost, pool, fill, eta, genes, diversity):
+    """Return whether the rule `relaxing` or `unique` rejects a child (Section 3.3)."""
+    total = 0.0
+    for i in range(fill):
+        other = pool.ones[i, : pool.count[i]]
+        if diversity == Diversity.relaxing:
+            total += gene_lists.q(ones, other, genes)
+        elif cost == pool.cost[i] and same(ones, other):
+            return True
+    return diversity == Diversity.relaxing and total > (1.0 - eta) * fill

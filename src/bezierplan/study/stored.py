@@ -151,7 +151,8 @@ def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dic
     that is in none of these, for a folder of no scale, and FileNotFoundError without runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
-    known = reading.on_page(folder) | named
+    on_page = reading.on_page(folder).items()
+    known = {key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()} | named
     found = {problems.parent.name for problems in folder.glob("*/problems")}
     if not found:
         raise FileNotFoundError(

@@ -4,12 +4,14 @@ start and target inside their cells.
 Cells are numbered as in `grid.Grid`; lengths are in cells.
 """
 
+import heapq
 import math
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.kernels import compiled
 from bezierplan.workspaces.grid import Grid
 
 Corners = IntEnum("Corners", {"free": 2, "one": 1, "none": 0})
@@ -106,6 +108,33 @@ def _around(occupied: np.ndarray) -> np.ndarray:
     )
     row, column = np.indices(occupied.shape).reshape(2, -1) + 1
     return np.column_stack([number[row + up, column + right] for up, right in STEPS])
+
+
+def distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray:
+    """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
+    neighbours, infinite where there is no path.
+    """
+    walls = np.pad(occupied, 1, constant_values=True)
+    return _distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
+
+
+@compiled
+def _distances(walls, row, column, steps):
+    """Return the `distances` within a frame of occupied cells (Dijkstra)."""
+    far = np.full(walls.shape, np.inf)
+    far[row, column] = 0.0
+    heap = [(0.0, row, column)]
+    while len(heap) > 0:
+        length, row, column = heapq.heappop(heap)
+        if length > far[row, column]:
+            continue
+        for k in range(len(steps)):
+            up, right = row + steps[k, 0], column + steps[k, 1]
+            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
+            if not walls[up, right] and ahead < far[up, right]:
+                far[up, right] = ahead
+                heapq.heappush(heap, (ahead, up, right))
+    return far
 
 
 def points(

@@ -110,6 +110,20 @@ def fluctuation(
     return mark, effect, (low, high), len(values)
 
 
+def endless_loops(
+    check: "FunctionCheck", results: "Experiments", published: "Published", *, least: float
+) -> "FunctionResult":
+    """Return claim C33: whether, of the iterations of a run that enter the loop of Algorithm 2, at
+    least a share do not end it by themselves. The effect is the mean of that share over the runs,
+    with its bootstrap interval.
+    """
+    runs = select(results[check.experiments[0]].runs, check.where)
+    shares = (runs["endless_loops"] / runs["loops"]).dropna().to_numpy()
+    low, high = map(float, interval("mean", shares, generator("elhoseny2017/C33")))
+    mark = "+" if low >= least else "-" if high < least else "?"
+    return mark, float(shares.mean()), (low, high), len(shares)
+
+
 def printed_over_bound(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
@@ -172,11 +186,3 @@ def radius_errors(published: "Published") -> pd.DataFrame:
             apart = printed["value"] - expected_length(side, radius, printed["obstacles"])
             rows.append((radius, side, apart.abs().mean() / printed["value"].mean()))
     return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])
-
-
-def share_blocked(published: "Published", obstacles: np.ndarray) -> np.ndarray:
-    """The share (n,) of fields whose diagonal is blocked by some numbers of obstacles (n,), with
-    the radius that fits the printed lengths best.
-    """
-    radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
-    return (expected_length(1, radius, obstacles) - DIAGONAL) / (2 - DIAGONAL)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import free_cells, headings, held_history, samples_of
-from bezierplan.analysis.metric import Metric, metric, of_path, on_maps, register
+from bezierplan.analysis.metric import Metric, count, metric, of_path, on_maps, register
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,28 +120,36 @@ register(
         "population_q": Metric(
             "-", "mean Q statistic of the surviving population, mean over the generations"
         ),
+        "loops": count("iterations whose offspring are so alike that more are made"),
+        "endless_loops": count("iterations that make as many batches of offspring as they may"),
     }
 )
 
 
-def _in_cells(number: int, meaning: str) -> None:
+def _in_cells(name: str, function: str, gap: str, meaning: str) -> None:
     """Register a length counted in cells, which has its own bound and gap, and that gap."""
-    alike = {"bound": "octile_bound", "gap": f"gap{number}", "feasible_only": True, "on": ("grid",)}
-    length = partial(length_in_cells, f"length{number}")
-    gap = partial(gap_cells, f"length{number}")
+    alike = {"bound": "octile_bound", "gap": gap, "feasible_only": True, "on": ("grid",)}
+    length, over = partial(length_in_cells, function), partial(gap_cells, function)
     register(
         {
-            f"cells{number}": Metric("u", meaning, length, least="octile_bound", **alike),
-            f"gap{number}": Metric(
-                "-", f"cells{number} / octile_bound - 1", gap, least=0.0, **alike
-            ),
+            name: Metric("u", meaning, length, least="octile_bound", **alike),
+            gap: Metric("-", f"{name} / octile_bound - 1", over, least=0.0, **alike),
         }
     )
 
 
 _in_cells(
-    4,
+    "points",
+    "length_by_points",
+    "gap_points",
+    "points of the path at most a cell apart, 1.5 for a diagonal step; none for a path that "
+    "touches an occupied cell",
+)
+_in_cells(
+    "cells4",
+    "length4",
+    "gap4",
     "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an "
     "occupied cell",
 )
-_in_cells(8, "cells4 without the corners of the sequence of cells")
+_in_cells("cells8", "length8", "gap8", "cells4 without the corners of the sequence of cells")

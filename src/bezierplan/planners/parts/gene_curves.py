@@ -9,14 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry.cell_length import (
-    cells4,
+    CUT,
+    HIGH,
+    QUARTERS,
+    cut,
     occupied_cells,
     parts,
     sum_of_steps,
     write_samples,
     write_touched_cells,
 )
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, inlined
 from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 
 # More control points make a chromosome invalid: the curve's degree is at most 60.
@@ -31,22 +34,20 @@ _ON_LINE = 1e-9
 # A sum of lengths is exact to this share.
 _ROUNDING = 1e-9
 
-CurveKind = IntEnum("CurveKind", "single composite", start=0)
-FitnessLength = IntEnum("FitnessLength", "length cells4", start=0)
+CurveKind = IntEnum("CurveKind", "single chain", start=0)
 _FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
 class Scratch(NamedTuple):
     """Room for a chromosome's curve, overwritten by each `validate`.
 
-    order: (points,) its genes. points: (points, 2) its polygon. piece: (3, 2) one of its quadratic
-    pieces. x, y: (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,)
-    the cells that it touches; before that, columns: the reach of some samples.
+    points: (points, 2) its polygon. pieces: (points, points, 2) those of its pieces. x, y:
+    (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that
+    it touches; before that, columns: the reach of some samples.
     """
 
-    order: np.ndarray
     points: np.ndarray
-    piece: np.ndarray
+    pieces: np.ndarray
     x: np.ndarray
     y: np.ndarray
     t: np.ndarray
@@ -66,9 +67,8 @@ def scratch_for(field: Field) -> Scratch:
     )
     numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
     return Scratch(
-        np.empty(MOST_POINTS, dtype=np.int64),
         np.empty((MOST_POINTS + 2, 2)),
-        np.empty((3, 2)),
+        np.empty((MOST_POINTS, MOST_POINTS + 2, 2)),
         *numbers,
         *cells,
     )
@@ -87,48 +87,71 @@ def validate(
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf
-    points = scratch.points[: write_polygon(ones, field, scratch.points, scratch.order)]
-    for i in range(1, len(points) - 1):  # `Distance Threshold`
-        for j in range(1, i):
-            width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
-            if (
-                max(width, height) < rules.least_distance
-                and math.hypot(width, height) < rules.least_distance
-            ):
-                return np.inf
-    composite = rules.curve == CurveKind.composite
-    by_length = rules.fitness_length == FitnessLength.length
-    sight, least = _at_first_sight(points, composite, field.room, scratch)
-    if sight == _OCCUPIED:
+    points = scratch.points[: write_polygon(ones, field, scratch.points)]
+    pieces = _write_pieces(points, rules.curve, field.room, scratch)
+    if pieces == 0:
         return np.inf
-    if sight == _FREE and by_length and least > limit:
+    size = 4 if pieces == len(points) - 3 else len(points)
+    sight, least = _at_first_sight(pieces, size, field.room, scratch)
+    if sight == _OCCUPIED or _are_near(points, rules.least_distance):
+        return np.inf
+    if sight == _FREE and least > limit:
         return least
-    count = _write_curve(points, composite, scratch)
+    count = 0
+    for k in range(pieces):
+        count += _write_samples_of_piece(scratch.pieces[k, :size], count, scratch)
     x, y = scratch.x[:count], scratch.y[:count]
-    if sight == _UNKNOWN or not by_length:
+    if sight == _UNKNOWN:
         count = write_touched_cells(x, y, scratch.columns, scratch.rows)
-        columns, rows = scratch.columns[:count], scratch.rows[:count]
-        if occupied_cells(columns, rows, field.occupied) > 0:  # `Valid Path`
-            return np.inf
-        if not by_length:
-            return cells4(columns, rows)
+        if occupied_cells(scratch.columns[:count], scratch.rows[:count], field.occupied) > 0:
+            return np.inf  # `Valid Path`
     return sum_of_steps(x, y, scratch.t)
 
 
-@allocation_free
-def _at_first_sight(points, composite, room, scratch):
+@inlined
+def _write_pieces(points, curve, room, scratch):
+    """Write the pieces of a curve that are walked one after another; returns their number, or 0 if
+    an end of one is in an occupied cell.
+    """
+    if curve == CurveKind.chain and len(points) > 3:
+        for k in range(len(points) - 3):
+            _write_piece(points, k, scratch.pieces[k])
+        return len(points) - 3
+    pieces = CUT if len(points) > HIGH else 1
+    if pieces > 1:
+        x, y, ends = scratch.x, scratch.y, QUARTERS * pieces - 1
+        write_samples(points, ends + 1, 1, 1, ends, x, y, scratch.t, scratch.power)
+        for i in range(ends):
+            if _reach(x[i], y[i], room) == 0:
+                return 0
+    for i in range(len(points)):
+        for axis in range(2):
+            scratch.pieces[0, i, axis] = points[i, axis]
+    cut(scratch.pieces[:pieces], len(points))
+    return pieces
+
+
+@inlined
+def _are_near(points, least_distance):
+    """Return whether two control points are closer than a distance (`Distance Threshold`)."""
+    for i in range(1, len(points) - 1):
+        for j in range(1, i):
+            width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
+            if max(width, height) < least_distance and math.hypot(width, height) < least_distance:
+                return True
+    return False
+
+
+@inlined
+def _at_first_sight(pieces, size, room, scratch):
     """What a walk over the cells of a curve would find, if a look at some of its samples tells:
     `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; and a length that the polyline through its samples
     has at least.
     """
-    if not composite:
-        return _sight_of_piece(points, _FIRST_PARTS, room, scratch)
     sight, least = _FREE, 0.0
-    pieces = len(points) - 2
     for k in range(pieces):
-        _write_piece(points, k, scratch.piece)
         seen, chords = _sight_of_piece(
-            scratch.piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
+            scratch.pieces[k, :size], max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
         )
         if seen == _OCCUPIED:
             return _OCCUPIED, 0.0
@@ -138,7 +161,7 @@ def _at_first_sight(points, composite, room, scratch):
     return sight, least
 
 
-@allocation_free
+@inlined
 def _sight_of_piece(piece, least_parts, room, scratch):
     """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only
     if there are fewer samples), then of all samples of those parts that come too close to obstacles
@@ -249,38 +272,27 @@ def _may_cut(x0, y0, x, y, room):
 
 @allocation_free
 def _write_piece(points, k, piece):
-    """Write the control points (3, 2) of a composite curve's quadratic piece k: they meet half-way
-    between those of the curve.
+    """Write the control points (4, 2) of piece k of a chain of cubic pieces with the same tangent
+    and curvature where they meet (Section 2.1): a clamped uniform B-spline of four or more points.
     """
+    pieces = len(points) - 3
+    before, after = min(k, 1), min(pieces - k - 1, 1)  # steps to the next knot on either side
+    further_before, further_after = min(k, 2), min(pieces - k - 1, 2)
     for axis in range(2):
-        piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
-        piece[1, axis] = points[k + 1, axis]
-        piece[2, axis] = (
-            0.5 * (points[k + 1, axis] + points[k + 2, axis])
-            if k < len(points) - 3
-            else points[-1, axis]
-        )
+        a, b, c, d = points[k, axis], points[k + 1, axis], points[k + 2, axis], points[k + 3, axis]
+        step = (c - b) / (before + 1 + after)
+        inner, outer = b + before * step, c - after * step
+        came = a + (b - a) * further_before / (further_before + 1)
+        goes = d + (c - d) * further_after / (further_after + 1)
+        piece[0, axis] = came + (inner - came) * before / (before + 1)
+        piece[1, axis], piece[2, axis] = inner, outer
+        piece[3, axis] = goes + (outer - goes) * after / (after + 1)
 
 
-@allocation_free
-def _write_curve(points, composite, scratch):
-    """Write x and y of samples of the curve (equation 2, or composite) less than a cell apart;
-    returns their number.
-    """
-    if not composite:
-        return _write_samples_of_piece(points, 0, scratch)
-    count = 0
-    for k in range(len(points) - 2):
-        _write_piece(points, k, scratch.piece)
-        count += _write_samples_of_piece(scratch.piece, count, scratch)
-    return count
-
-
-@allocation_free
+@inlined
 def _write_samples_of_piece(piece, place, scratch):
     """Write x and y of a piece's samples from a place on; returns their number."""
+    x, y = scratch.x[place:], scratch.y[place:]
     last = parts(piece)
-    write_samples(
-        piece, last, 0, 1, last + 1, scratch.x[place:], scratch.y[place:], scratch.t, scratch.power
-    )
+    write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)
     return last + 1

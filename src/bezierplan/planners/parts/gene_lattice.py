@@ -4,16 +4,13 @@
 Coordinates and lengths are in cells from the grid's lower left corner.
 """
 
-import heapq
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners.parts.sorting import sort
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import STEPS
+from bezierplan.workspaces.lattice import distances
 
 
 class Field(NamedTuple):
@@ -21,26 +18,24 @@ class Field(NamedTuple):
 
     occupied: bool (rows, columns). room: (rows, columns) steps in any of eight directions to the
     nearest occupied cell, 0 for an occupied one; the longer side where all cells are free. points:
-    (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places:
-    the number of lattice points along the longer side, then how many columns and rows of genes lie
-    on the map. start, target: x and y.
+    (genes, 2) centre of each gene's cell, in the order in which control points are joined. index:
+    (genes,) its place on the lattice, column by column. settable: (genes,) whether it may be 1;
+    choices: the genes that may. start, target: x and y.
     """
 
     occupied: np.ndarray
     room: np.ndarray
     points: np.ndarray
-    rank: np.ndarray
+    index: np.ndarray
     settable: np.ndarray
     choices: np.ndarray
-    places: tuple[int, int, int]
     start: tuple[float, float]
     target: tuple[float, float]
 
 
 def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
-    """The genes of a grid, column by column, and the order in which they are joined; ends: (2, 2)
-    both ends in cells.
+    """Return the genes of a grid, in the order in which they are joined; ends: (2, 2) both ends in
+    cells.
 
     Raises ValueError if no cell of the lattice is free.
     """
@@ -56,64 +51,32 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
     )
     column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
     points = np.column_stack([column, row]) + 0.5
-    settable = (column < columns) & (row < rows)
-    settable[settable] = ~grid.occupied[row[settable], column[settable]]
-    for end in np.floor(ends):
-        settable &= (column != end[0]) | (row != end[1])
-    choices = np.flatnonzero(settable)
-    if not len(choices):
+    walls = np.pad(grid.occupied, ((0, longer - rows), (0, longer - columns)), constant_values=True)
+    at_end = (points == np.floor(ends)[:, None] + 0.5).all(axis=2).any(axis=0)
+    settable = ~walls[row, column] & ~at_end
+    if not settable.any():
         raise ValueError(
             "gene_lattice: no free gene; every cell of the lattice is occupied, or start or target"
         )
-    rank = np.arange(len(points))
+    index = np.arange(len(points))
     if point_order == "projection":
         along = ends[1] - ends[0]
         left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
-        rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
+        index = np.lexsort((-left, (points - ends[0]) @ along))
     elif point_order == "geodesic":
-        far = np.full(2 * (longer,), np.inf)
-        far[:columns, :rows] = _distances(
-            np.pad(grid.occupied, 1, constant_values=True),
-            *np.floor(ends[0, ::-1]).astype(int),
-            STEPS,
-        ).T
-        rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
+        far = distances(walls, *np.floor(ends[0, ::-1]).astype(int))
+        index = np.argsort(far[row, column], kind="stable")
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
     room[room < 0] = longer  # there is no occupied cell
-    places = len(steps), int((steps < columns).sum()), int((steps < rows).sum())
     return Field(
         grid.occupied,
         room,
-        points,
-        rank,
-        settable,
-        choices,
-        places,
+        points[index],
+        index,
+        settable[index],
+        np.flatnonzero(settable[index]),
         *map(tuple, ends.tolist()),
     )
-
-
-@compiled
-def _distances(walls, row, column, steps):
-    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours,
-    infinite where there is no path.
-
-    walls: the cells with a frame of occupied cells around them.
-    """
-    far = np.full(walls.shape, np.inf)
-    far[row + 1, column + 1] = 0.0
-    heap = [(0.0, row + 1, column + 1)]
-    while len(heap) > 0:
-        length, row, column = heapq.heappop(heap)
-        if length > far[row, column]:
-            continue
-        for k in range(len(steps)):
-            up, right = row + steps[k, 0], column + steps[k, 1]
-            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
-            if not walls[up, right] and ahead < far[up, right]:
-                far[up, right] = ahead
-                heapq.heappush(heap, (ahead, up, right))
-    return far[1:-1, 1:-1]
 
 
 def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
@@ -127,23 +90,20 @@ def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
 
 
 def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
-    """Start, the control points of a chromosome in their order, and target: (points, 2)."""
+    """Return start, the control points of a chromosome, and target: (points, 2)."""
     points = np.empty((len(ones) + 2, 2))
-    write_polygon(ones, field, points, np.empty_like(ones))
+    write_polygon(ones, field, points)
     return points
 
 
 @allocation_free
-def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray, order: np.ndarray) -> int:
+def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray) -> int:
     """Write the `polygon` of a chromosome (n,) to the first n + 2 of some points; returns their
-    number. order: (n,) or more, scratch.
+    number.
     """
     count = len(ones)
-    for i in range(count):
-        order[i] = ones[i]
-    sort(order[:count], field.rank)
     for axis in range(2):
         points[0, axis], points[count + 1, axis] = field.start[axis], field.target[axis]
         for i in range(count):
-            points[i + 1, axis] = field.points[order[i], axis]
+            points[i + 1, axis] = field.points[ones[i], axis]
     return count + 2

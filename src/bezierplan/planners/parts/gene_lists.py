@@ -55,30 +55,36 @@ def select(pool: Pool, survivors: int, fill: int) -> None:
 
 
 @allocation_free
-def position(genes: np.ndarray, count: int, gene: int) -> int:
-    """Index of a gene among the first `count` of a list, `count` if it is not there."""
-    for i in range(count):
-        if genes[i] == gene:
-            return i
-    return count
+def place_of(genes: np.ndarray, count: int, gene: int) -> int:
+    """Return the place among the first `count` of a list at which a gene stands, or belongs."""
+    place = count
+    while place > 0 and genes[place - 1] >= gene:
+        place -= 1
+    return place
+
+
+@allocation_free
+def insert(genes: np.ndarray, count: int, place: int, gene: int) -> int:
+    """Write a gene to its place in a list, in place; returns how many are 1. A gene that does not
+    fit is lost.
+    """
+    if count == len(genes):
+        return count
+    for i in range(count, place, -1):
+        genes[i] = genes[i - 1]
+    genes[place] = gene
+    return count + 1
 
 
 @allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
-    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are lost."""
-    index = position(genes, count, gene)
-    if index < count:
-        for i in range(index, count - 1):
-            genes[i] = genes[i + 1]
-        return count - 1
-    if count == len(genes):
-        return count
-    index = count
-    while index > 0 and genes[index - 1] > gene:
-        genes[index] = genes[index - 1]
-        index -= 1
-    genes[index] = gene
-    return count + 1
+    """Flip a gene of a list, in place; returns how many are 1."""
+    place = place_of(genes, count, gene)
+    if place == count or genes[place] != gene:
+        return insert(genes, count, place, gene)
+    for i in range(place, count - 1):
+        genes[i] = genes[i + 1]
+    return count - 1
 
 
 @allocation_free
@@ -92,84 +98,111 @@ def gap(rng: np.random.Generator, log_stay: float) -> int:
 
 
 @allocation_free
-def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
-    """Write, to a child, the genes of one chromosome before a cut and of another from it on;
-    returns how many are 1.
+def cross(pool: Pool, head: int, tail: int, cut: int, index: np.ndarray, child: np.ndarray) -> int:
+    """Write, to a child, the genes of one chromosome with an index before a cut and of another from
+    it on; returns how many are 1.
     """
-    count = 0
-    for i in range(pool.count[head]):
-        if pool.ones[head, i] < cut:
-            child[count] = pool.ones[head, i]
-            count += 1
-    for i in range(pool.count[tail]):
-        if pool.ones[tail, i] >= cut:
-            child[count] = pool.ones[tail, i]
+    i = j = count = 0
+    while i < pool.count[head] or j < pool.count[tail]:
+        from_head = j == pool.count[tail] or (
+            i < pool.count[head] and pool.ones[head, i] < pool.ones[tail, j]
+        )
+        gene = pool.ones[head, i] if from_head else pool.ones[tail, j]
+        i += from_head
+        j += not from_head
+        if (index[gene] < cut) == from_head:
+            child[count] = gene
             count += 1
     return count
 
 
-@compiled
-def kinds_of(pool: Pool, size: int) -> tuple[int, np.ndarray, np.ndarray]:
-    """Number of distinct chromosomes among the first `size` of the pool, a place of each of them
-    (size,), and for each place (size,) which of them is there.
-    """
-    kind, heads, kinds = np.empty(size, dtype=np.int64), np.empty(size, dtype=np.int64), 0
-    for i in range(size):
-        k = kinds - 1
-        while k >= 0:
-            head = heads[k]  # equal chromosomes have equal costs
-            if pool.cost[i] == pool.cost[head] and same(
-                pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]
-            ):
-                break
-            k -= 1
-        if k < 0:
-            k = kinds
-            heads[kinds] = i
-            kinds += 1
-        kind[i] = k
-    return kinds, heads, kind
-
-
 @allocation_free
 def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
-    """The Q statistic of the lists of two chromosomes of `genes` genes."""
+    """Return the Q statistic of the lists of two chromosomes of `genes` genes."""
     both = shared(one, other)
     return q_statistic(
         both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both
     )
 
 
-@compiled
-def sum_of_q(pool: Pool, first: int, fill: int, genes: int) -> float:
-    """Sum of Q over the pairs of chromosomes in the pool, the second of which is at a place from
-    `first` on.
-
-    A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
-    is made in the order of the places.
+class Kinds(NamedTuple):
+    """Distinct chromosomes of a pool, of which many are alike. head: (places,) a place of each in
+    the pool; copies: (places,) how many there are; q: (places, places) the Q of each with those
+    before it. marked: (genes,) scratch, all 0 before and after.
     """
-    kinds, heads, kind = kinds_of(pool, fill)
-    values, marked = np.empty((kinds, kinds)), np.zeros(genes, dtype=np.int64)
-    for k in range(kinds):
-        chromosome = heads[k]
-        for gene in pool.ones[chromosome, : pool.count[chromosome]]:
-            marked[gene] = 1
-        for m in range(k + 1):
-            other, both = heads[m], 0
-            for n in range(pool.count[other]):
-                both += marked[pool.ones[other, n]]
-            only_one, only_other = pool.count[chromosome] - both, pool.count[other] - both
-            values[k, m] = values[m, k] = q_statistic(
-                both, genes - both - only_one - only_other, only_one, only_other
-            )
-        for gene in pool.ones[chromosome, : pool.count[chromosome]]:
-            marked[gene] = 0
+
+    head: np.ndarray
+    copies: np.ndarray
+    q: np.ndarray
+    marked: np.ndarray
+
+
+@compiled
+def empty_kinds(places: int, genes: int) -> Kinds:
+    """Return room for the kinds of a pool of `places` chromosomes of `genes` genes."""
+    return Kinds(
+        np.empty(places, np.int64),
+        np.empty(places),
+        np.empty((places, places)),
+        np.zeros(genes, np.int64),
+    )
+
+
+@allocation_free
+def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> int:
+    """Count the chromosomes at the places from `first` on among `count` kinds; returns how many
+    kinds there are then.
+    """
+    for place in range(first, fill):
+        kind = 0
+        while kind < count and not _is_kind(pool, place, kinds.head[kind]):
+            kind += 1
+        if kind == count:
+            _add_kind(pool, place, count, kinds)
+            count += 1
+        kinds.copies[kind] += 1.0
+    return count
+
+
+@allocation_free
+def mean_q(kinds: Kinds, count: int, fill: int) -> float:
+    """Return the mean Q of all pairs of `fill` chromosomes of `count` kinds; that of two equal ones
+    is 1.
+    """
     total = 0.0
-    for j in range(max(first, 1), fill):
-        row = values[kind[j]]
-        for i in range(j):
-            total += row[kind[i]]
-    return total
+    for kind in range(count):
+        others = 0.5 * (kinds.copies[kind] - 1.0)
+        for other in range(kind):
+            others += kinds.copies[other] * kinds.q[kind, other]
+        total += kinds.copies[kind] * others
+    return total / (fill * (fill - 1) / 2)
+
+
+@allocation_free
+def _is_kind(pool, place, head):
+    """Return whether two places hold equal chromosomes, whose costs are then equal."""
+    return pool.cost[place] == pool.cost[head] and same(
+        pool.ones[place, : pool.count[place]], pool.ones[head, : pool.count[head]]
+    )
+
+
+@allocation_free
+def _add_kind(pool, place, kind, kinds):
+    """Add the chromosome at a place as a new kind without copies, and its Q with the others."""
+    kinds.head[kind], kinds.copies[kind] = place, 0.0
+    ones, genes = pool.ones[place, : pool.count[place]], len(kinds.marked)
+    for gene in ones:
+        kinds.marked[gene] = 1
+    for other in range(kind):
+        head, both = kinds.head[other], 0
+        for k in range(pool.count[head]):
+            both += kinds.marked[pool.ones[head, k]]
+        only_one, only_other = len(ones) - both, pool.count[head] - both
+        kinds.q[kind, other] = q_statistic(
+            both, genes - both - only_one - only_other, only_one, only_other
+        )
+    for gene in ones:
+        kinds.marked[gene] = 0
 
 
 # Entries of a memory of chromosomes.
