@@ -24,7 +24,7 @@ from test_claims import (
 
 from bezierplan.analysis import measures
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.numbers import baseline_comparison, comparison
+from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.planners import warm_swarm
 from bezierplan.running import rides
@@ -248,21 +248,6 @@ def test_without_rivals_a_number_a_tenth_off_ours_matters(end, power):
     row |= {"decimals": 1, "bound": 0.0, "metric": "objective"}
     found = comparison._judged(row, True, 10.0, (9.0, end), 20, np.empty(0))
     assert found["power"] == power
-
-
-@pytest.mark.parametrize(("cpu", "restarts"), [(7.9, 1), (8.0, 2), (11.9, 2)])
-def test_a_method_starts_again_as_often_as_it_ends_in_the_time(cpu, restarts):
-    curve = ("polyline", [0.0, 0.0, 10.0, 0.0])
-    runs = [
-        {"method": method, "cpu_s": seconds, "condition": "a", "problem": "a", "evaluations": 1}
-        | {"length": 10.0, "bound": 10.0, "feasible": True}
-        | dict(zip(("path_curve", "path_points"), curve))
-        for method, seconds in (("base", 1.0), ("fast", 4.0), ("slow", cpu))
-    ]
-    found = baseline_comparison.measured(
-        {"e": SimpleNamespace(runs=pd.DataFrame(runs), problems={})}, "base"
-    )
-    assert found.set_index("method")["restarts"].to_dict() == {"fast": restarts, "slow": 1}
 
 
 # --------------------------------------------------------------------------------------------------
