@@ -115,4 +115,4 @@ def test_markdown_leaves_out_what_no_study_has():
         "**Of 1 printed number our range is narrow enough to tell for 1: 1 lie inside it, 0"
     )
     assert "| 1 | 1 | 1 | 0 % | 1 | 0 | 0 | 0 |" in text
-    assert outcome.BESIDE not in text
+    assert outcome.RANGE in text

@@ -24,7 +24,7 @@ from test_claims import (
 
 from bezierplan.analysis import measures
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.numbers import baseline_comparison, comparison
+from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.planners import warm_swarm
 from bezierplan.running import rides
@@ -233,21 +233,6 @@ def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, ab
     assert comparison.position(low, low, high) == comparison.position(high, low, high) == "inside"
     assert below == low or comparison.position(below, low, high) == "below"
     assert comparison.position(ours, math.nan, math.nan) == comparison.NO_RANGE
-
-
-@pytest.mark.parametrize(("cpu", "restarts"), [(7.9, 1), (8.0, 2), (11.9, 2)])
-def test_a_method_starts_again_as_often_as_it_ends_in_the_time(cpu, restarts):
-    curve = ("polyline", [0.0, 0.0, 10.0, 0.0])
-    runs = [
-        {"method": method, "cpu_s": seconds, "condition": "a", "problem": "a", "evaluations": 1}
-        | {"length": 10.0, "bound": 10.0, "feasible": True}
-        | dict(zip(("path_curve", "path_points"), curve))
-        for method, seconds in (("base", 1.0), ("fast", 4.0), ("slow", cpu))
-    ]
-    found = baseline_comparison.measured(
-        {"e": SimpleNamespace(runs=pd.DataFrame(runs), problems={})}, "base"
-    )
-    assert found.set_index("method")["restarts"].to_dict() == {"fast": restarts, "slow": 1}
 
 
 # --------------------------------------------------------------------------------------------------

@@ -67,7 +67,7 @@ def made(
         else:
             continue
         yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
-    yield jobs.baseline_comparison(studies, scale), ["baseline_comparison.csv"]
+    yield jobs.baseline_comparison(studies, scale), ["baseline_comparison.csv", "methods.csv"]
     yield jobs.worth(studies, scale), ["worth.csv"]
     yield jobs.summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
     yield page.page(studies, scale, root), [PAGE]
