@@ -20,6 +20,9 @@ from bezierplan.study.experiments import Experiment
 
 DEFAULT = "default"
 
+MOST_REPEATS = 1000
+"""Repeats of a method under each condition with which readings are judged, at most."""
+
 
 def default_of(study: Study, assumption: AssumptionEntry) -> Any:
     """Return the value that runs use where an assumption leaves it to a setting: one for the
@@ -84,8 +87,16 @@ def joint_readings(study: Study) -> dict[str, Study]:
     """Return the study under each joint reading, with the claims that are judged under it, by the
     name of the folder of its results.
     """
+    experiments = {
+        name: content.but(
+            repeats=_at_most(content.repeats, MOST_REPEATS),
+            chunk=_at_most(content.chunk, MOST_REPEATS),
+        )
+        for name, content in study.experiments.items()
+    }
+    fewer = study.but(experiments=experiments)
     return {
-        each.folder: with_claims(under(study, each.values), claims_of(study, each))
+        each.folder: with_claims(under(fewer, each.values), claims_of(study, each))
         for each in study.readings
     }
 
