@@ -6,20 +6,18 @@ samples. Next to each verdict stands the verdict at the paper's own number of ru
 `make outcome` writes it; the site and the report read it.
 """
 
-import math
 import re
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import naming, words
+from bezierplan.analysis import naming
 from bezierplan.analysis.markdown import table_text
-from bezierplan.analysis.numbers import benchmark
+from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline, summary, verdict
-from bezierplan.analysis.results import of_folder
 from bezierplan.commands import read_studies
 from bezierplan.running.inputs import PAPER
 from bezierplan.study.page import list_settings
@@ -29,22 +27,24 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone, and its claims under readings.
 AUDIT, BY_READING = "audit.csv", "claims_by_reading.csv"
-BASELINE_COMPARISON, WORTH, WHOLES = "baseline_comparison.csv", "worth.csv", "wholes.csv"
+BASELINE_COMPARISON, METHODS = "baseline_comparison.csv", "methods.csv"
+WORTH, WHOLES = "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
-"""What many runs say: the site and the report take verdicts, reasons and wholes from it alone."""
+"""What many runs say: the site and the report take positions and verdicts from it alone."""
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
-SCORED = ["experiment", "problem", "method", "runs", "feasible", "excess", "evaluations"]
-BESIDE = (
-    "The proposed method, as multiples of the exact shortest path with rounded corners, which "
-    "needs no search and is always free. A bend below 1 is smoother."
+GENTLY = (
+    "The papers' methods, worst first: medians over the problems. The exact shortest path with "
+    "rounded corners is asked to turn no tighter than the method's median path without corners; "
+    "the column after it counts the problems in which the method is shorter than that path, or "
+    "turns more gently than it can."
 )
-LAID = (
-    "In each cell below the printed number stands before ours, of many runs: + agrees, x "
-    "disagrees, ? cannot be tested; = beside a printed number: the length of a path that we can "
-    "name."
+RANGE = (
+    "Our range is where 95 % of experiments of the paper's size end under our default reading. It "
+    "cannot tell where it holds at least half of the paper's other numbers of the same kind."
 )
+LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
@@ -62,10 +62,6 @@ def main() -> None:
         [(key, *row) for key, each in studies.items() for row in list_settings(each)],
         columns=["study", "of", "setting", "value"],
     )
-    compared = {key: each.baseline_comparison for key, each in studies.items()}
-    scored = [
-        f"{key}/{name}" for key, each in compared.items() if each for name in each.experiments
-    ]
     tables = {
         key: {
             name: (study.tables[name].title, len(study.tables[name].index))
@@ -74,7 +70,7 @@ def main() -> None:
         }
         for key, study in studies.items()
     }
-    write(*named(studies), settings, scored, tables)
+    write(*named(studies), settings, tables)
     for picture in PICTURES:
         study, _, name = picture.split("/")
         shutil.copyfile(FULL / picture, KEPT / f"{study}_{name}")
@@ -91,20 +87,19 @@ def write(
     titles: Mapping[str, str],
     verdicts: verdict.Files,
     settings: pd.DataFrame,
-    experiments: Iterable[str],
     tables: Mapping[str, Mapping[str, tuple[str, int]]],
 ) -> None:
     """Write the tables of docs/outcome, a page for each paper, and the README's part. Raises
     FileNotFoundError if results are missing.
 
     titles: of studies, by name. verdicts: their sentences. settings: of their methods.
-    experiments: those on whose problems others can be scored, each `study/name`. tables: of each
+    tables: of each
     study those with printed numbers, name -> title, and how many columns name the rows.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
     claims = with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
-    for name in ("numbers.csv", BASELINE_COMPARISON, WORTH, WHOLES):
+    for name in ("numbers.csv", BASELINE_COMPARISON, METHODS, WORTH, WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
@@ -115,7 +110,6 @@ def write(
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
     checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
     settings.to_csv(KEPT / "settings.csv", index=False)
-    scores(FULL, experiments).to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
     follow = following(KEPT, verdicts, numbers, claims, measured)
     for key, text in follow.items():
         page = paper(titles[key], text, claims[claims["study"] == key], RESULTS / key, tables[key])
@@ -132,7 +126,7 @@ def paper(
     folder: Path,
     tables: Mapping[str, tuple[str, int]],
 ) -> str:
-    """The page of a paper, as markdown: its word and what follows, its main claims, and its tables
+    """The page of a paper, as markdown: what follows, its main claims, and its tables
     with the printed number beside ours in each cell.
 
     text: as from `following`. folder: of the study's results. tables: as for `write`.
@@ -142,7 +136,7 @@ def paper(
     main = claims.loc[claims["primary"] & claims["main"].astype(bool), [*heads]].fillna("")
     parts = [
         f"# {title}",
-        f"**{headline.word(claims).capitalize()}.** {text.strip()}",
+        text.strip(),
         "## What abstract and conclusion claim",
         table_text(main.rename(columns=heads).set_index("claim")),
         MORE.format(folder.name),
@@ -157,13 +151,12 @@ def paper(
 
 
 def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """A table with the printed number before ours in each cell, and the sign of its verdict."""
+    """Return a table with the printed number before our range in each cell, or before ours."""
     cells = ours.iloc[:, heads:].to_numpy()
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        sign = words.WORDS[number["verdict"]].sign if number["verdict"] in words.WORDS else ""
-        named = " =" if isinstance(number["identified"], str) else ""
-        cells[place] = f"{number['as_printed']}{named} / {cells[place]} {sign}".rstrip()
+        text = comparison.beside(number) or f"ours {cells[place]}"
+        cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
@@ -187,7 +180,11 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
     pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
     overview = markdown(headline.headline(*tables, titles), pages)
     most = int(tables[0]["n_ours"].max())
-    return f"{overview}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
+    rows = methods.of_families(pd.read_csv(folder / METHODS))
+    beside = f"{table_text(methods.laid_out(rows))}\n\n{GENTLY}"
+    return (
+        f"{overview}\n\n{beside}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
+    )
 
 
 def sentences(text: str) -> list[str]:
@@ -218,34 +215,18 @@ def with_block(text: str, name: str, block: str) -> str:
 
 
 def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
-    """Return the headline as markdown: the sentences, the tables, and what their words mean.
+    """Return the headline as markdown: the sentences, the papers, and what their words mean.
 
     addresses: of the studies' pages, by name.
     """
     parts = [f"**{' '.join(head.sentences)}**"]
-    for table, headings, legend in (
-        (head.papers, headline.PAPERS, headline.LEGEND),
-        (head.methods, headline.METHODS, BESIDE),
-    ):
-        if not table.empty:
-            shown = table.rename(
-                columns=headings,
-                index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
-            )
-            parts += [table_text(shown), legend]
+    if not head.papers.empty:
+        shown = head.papers.rename(
+            columns=headline.PAPERS,
+            index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
+        )
+        parts += [table_text(shown), RANGE]
     return "\n\n".join(parts)
-
-
-def scores(folder: Path, experiments: Iterable[str]) -> pd.DataFrame:
-    """Return the summaries of experiments, each `study/name`, in results of a scale."""
-    tables = []
-    for experiment in experiments:
-        study, _, name = experiment.partition("/")
-        runs = of_folder(folder / study, name).runs.rename(columns={"bound": "shortest"})
-        # Other methods are scored without these.
-        runs = runs.assign(curvature=math.nan, cpu_s=math.nan)
-        tables.append(benchmark.summaries(runs).assign(experiment=experiment))
-    return pd.concat(tables)[SCORED]
 
 
 if __name__ == "__main__":

@@ -27,26 +27,32 @@ NUMBER |= {"n_ours": 10, "value_ours": 10.715, "value_ours_scaled": 10.715}
 NUMBER |= {"low95_ours": 10.2, "high95_ours": 11.1, "low95_predicted": 10.1}
 NUMBER |= {
     "high95_predicted": 11.3,
-    "why": None,
-    "identified": None,
+    "wide": False,
+    "reason": None,
     "share_feasible": 0.9,
     "bound": 7.7,
     "gap": 0.396,
 }
 NUMBERS = [
-    {"method": "a", "metric": "length", "verdict": "agrees", "primary": True},
+    {"method": "a", "metric": "length", "position": "inside", "primary": True},
     {
         "method": "b",
         "metric": "length",
-        "verdict": "disagrees",
+        "position": "above",
         "primary": True,
         "value_ours": 14.0,
     },
-    {"method": "a", "metric": "objective", "verdict": "inconclusive", "primary": True},
-    {"method": "c", "metric": "length", "verdict": None, "primary": False, "value_published": None},
+    {"method": "a", "metric": "objective", "position": "inside", "primary": True, "wide": True},
+    {
+        "method": "c",
+        "metric": "length",
+        "position": None,
+        "primary": False,
+        "value_published": None,
+    },
 ]
 NUMBERS[1]["value_ours_scaled"] = 14.0
-NUMBERS[2]["why"] = "interval without an end on that side"
+NUMBERS[2]["reason"] = "the map is ours"
 
 CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
 CLAIM |= {
@@ -87,8 +93,8 @@ LEVEL = {
     "place": json.dumps({"problem": HOSTILE}),
     "metric": "length",
 }
-LEVEL |= {"quantity": "level", "printed": 10.5, "in_range": True, "why": "a map of ours"}
-ORDER = LEVEL | {"quantity": "order", "printed": -0.5, "in_range": False}
+LEVEL |= {"quantity": "level", "printed": 10.5, "position": "inside"}
+ORDER = LEVEL | {"quantity": "order", "printed": -0.5, "position": "below"}
 ORDER |= {"low95_predicted": 0, "high95_predicted": 1}
 CHECK |= {"group": "b", "relation": "lower than", "other": "c", "together": None}
 CHECK |= {"mark": "+", "mark_family": "+", "effect": -1.0}
@@ -111,7 +117,7 @@ def job() -> PageJob:
         title=HOSTILE,
         paper=SimpleNamespace(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
-        methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
+        methods={"a": MethodView("chaotic_pso", {"size": HOSTILE}, HOSTILE)},
         claims={
             name: SimpleNamespace(
                 checks=[checks_of_claims.check_of(LOWER)],

@@ -18,7 +18,11 @@ STUDIES = studies()
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 # Alternatives that matter only under others: how often a roadmap is drawn, where one has few links.
-UNDER = {("elhoseny2017", "O15q_1"): {"prm": {"neighbours": 1}}}
+UNDER = {
+    ("elhoseny2017", "O15q_1"): {"prm": {"neighbours": 1}},
+    # Few points seldom coincide.
+    ("song2016", "O13_consecutive"): {"smooth": {"genes": 30, "generations": 1}},
+}
 
 
 def found(study, experiment, method, place=-1):

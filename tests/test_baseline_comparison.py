@@ -95,21 +95,6 @@ def test_corners_curve_without_limit_and_a_straight_baseline_is_no_measure():
     assert math.isnan(found.loc["elsewhere", "curvature"])
 
 
-def test_a_fast_method_may_start_again_while_a_slow_one_runs():
-    """Of three runs, one of which fails: the median of the best of four."""
-    found = rows(
-        run("a", "base", 10.0, arc(1.0), cpu=4.0),
-        *(run("a", "fast", length, arc(1.0)) for length in (12.0, 11.0, 15.0)),
-        run("a", "fast", 10.0, arc(1.0), feasible=False),
-        run("a", "slow", 11.0, arc(1.0), cpu=4.0),
-    )
-    assert found.loc["slow", ["restarts", "gap", "gap_restarts"]].tolist() == [1, 10.0, 10.0]
-    fast = found.loc["fast"]
-    assert (fast["restarts"], fast["gap"]) == (4, 11.0)
-    assert fast["feasible_restarts"] == 1 - 0.25**4
-    assert fast["gap_restarts"] == 10.0  # 1 - (3 / 4) ** 4 > 1 / 2
-
-
 def test_an_arc_has_the_energy_of_its_angle_over_its_radius():
     for radius in (0.5, 2.0):
         path = Path("bezier", np.reshape(arc(radius)[1], (-1, 2)))

@@ -125,7 +125,7 @@ def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
         resolved["generations"],
         resolved["population"],
         resolved["samples"],
-    ) == (5.0, 9, 8, 601)
+    ) == (5.0, 9, 8, 501)
 
 
 def test_a_study_with_other_settings_is_checked_anew():

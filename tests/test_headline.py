@@ -13,18 +13,18 @@ from bezierplan.analysis.outcome import headline
 
 
 def numbers(*rows):
-    """rows: study, verdict, published, ours, and further columns."""
+    """rows: study, position, published, ours, and further columns."""
     made = [
         {
             "study": study,
-            "verdict": verdict,
+            "position": position,
             "value_published": printed,
             "value_ours_scaled": ours,
             **more,
         }
-        for study, verdict, printed, ours, more in rows
+        for study, position, printed, ours, more in rows
     ]
-    usual = {"counted": True, "why": ""}
+    usual = {"counted": True, "wide": False, "reason": ""}
     return pd.DataFrame([usual | row for row in made])
 
 
@@ -45,9 +45,9 @@ def measured(*rows):
 def test_numbers_claims_and_methods_are_said_in_three_sentences():
     found = headline.headline(
         numbers(
-            ("one", "agrees", 10.0, 11.0, {}),
-            ("one", "disagrees", 10.0, 31.0, {}),
-            ("two", "inconclusive", 10.0, 10.0, {}),
+            ("one", "inside", 10.0, 11.0, {"reason": comparison.NO_MAP}),
+            ("one", "below", 10.0, 31.0, {}),
+            ("two", "inside", 10.0, 10.0, {"wide": True}),
         ),
         claims(
             one=["supported", "partly", "no effect"],
@@ -59,40 +59,26 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
-        "Of 3 printed numbers 2 can be tested; of these we reproduce 1.",
+        "Of 3 printed numbers our range is narrow enough to tell for 2: 1 lie inside it, 1 "
+        "outside. The other 1 would fit almost anything. For 1 the paper prints no map, so "
+        "neither proves it right or wrong.",
         "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 cannot be decided.",
         "The exact shortest path with rounded corners is always free: of the 1 method that are "
         "free as often, none gives a shorter path, and none a smoother one.",
     ]
-    assert found.papers.loc["one"].to_list() == ["in part", *"21", "1 of 2", *"1110"]
-    assert found.papers.loc["two"].to_list() == ["not reproduced", *"00", "1 of 1", *"0021"]
+    assert found.papers.loc["one"].to_list() == [*"221", "1.1e+02 %", *"1110"]
+    assert found.papers.loc["two"].to_list() == [*"100", "0 %", *"0021"]
     assert found.methods.loc["one"].to_list() == ["90 %", "0.50 ×", "12 ×", "3 ×"]
 
 
 def test_findings_of_ours_and_other_interpretations_do_not_count():
     own = claims(one=["supported", "contradicted", "contradicted"])
     own["finding"], own["primary"] = [False, True, False], [True, True, False]
-    printed = numbers(("one", "agrees", 1.0, 1.0, {}), ("one", "disagrees", 1.0, 9.0, {}))
-    counts = headline.outcome(printed.assign(counted=[True, False]), own).loc["one"]
-    assert (counts["numbers"], counts["agrees"], counts["disagrees"]) == (1, 1, 0)
-    assert (counts["supported"], counts["contradicted"]) == (1, 0)
-
-
-@pytest.mark.parametrize(
-    ("verdicts", "word"),
-    [
-        (["supported", "depends", "untestable"], "reproduced"),
-        (["supported", "contradicted"], "in part"),
-        (["no effect", "partly"], "in part"),
-        (["no effect", "contradicted", "undecided"], "not reproduced"),
-        (["depends", "untestable"], "cannot be told"),
-        ([], "cannot be told"),
-    ],
-)
-def test_a_paper_has_one_word_by_its_main_claims(verdicts, word):
-    own = claims(one=[*verdicts, "contradicted"])
-    own["main"] = [True] * len(verdicts) + [False]
-    assert headline.word(own) == word
+    printed = numbers(("one", "inside", 1.0, 1.0, {}), ("one", "above", 9.0, 1.0, {}))
+    found = headline.headline(
+        printed.assign(counted=[True, False]), own, measured(), {"one": "One"}
+    ).papers.loc["one"]
+    assert found.to_list() == ["1", "1", "1", "0 %", "1", "0", "0", "0"]
 
 
 def test_what_a_method_as_reliable_as_the_baseline_gives_is_said():
@@ -109,16 +95,16 @@ def test_what_a_method_as_reliable_as_the_baseline_gives_is_said():
 
 
 def test_deviations_are_relative_and_of_quantities_that_the_paper_defines():
-    undefined = ("one", "inconclusive", 5.0, 50.0, {"why": comparison.UNDEFINED})
-    table = numbers(("one", "agrees", 5.0, 6.85, {}), undefined, ("one", "agrees", 0.0, 1.0, {}))
+    undefined = ("one", "below", 5.0, 50.0, {"reason": comparison.UNDEFINED})
+    table = numbers(("one", "inside", 5.0, 6.85, {}), undefined, ("one", "inside", 0.0, 1.0, {}))
     assert headline.deviations(table) == pytest.approx([0.37, math.inf])
-    assert headline.deviations(numbers(("one", "agrees", 0.0, 0.0, {}))) == 0
+    assert headline.deviations(numbers(("one", "inside", 0.0, 0.0, {}))) == 0
 
 
 def test_markdown_leaves_out_what_no_study_has():
     text = outcome.markdown(
         headline.headline(
-            numbers(("one", "agrees", 1.0, 1.0, {})),
+            numbers(("one", "inside", 1.0, 1.0, {})),
             claims(one=["supported"]),
             measured(),
             {"one": "One"},
@@ -126,7 +112,7 @@ def test_markdown_leaves_out_what_no_study_has():
         {},
     )
     assert text.startswith(
-        "**Of 1 printed number 1 can be tested; of these we reproduce 1. Of 1 claim"
+        "**Of 1 printed number our range is narrow enough to tell for 1: 1 lie inside it, 0"
     )
-    assert "| reproduced | 1 | 1 | 1 of 1 | 1 | 0 | 0 | 0 |" in text
-    assert headline.BESIDE not in text
+    assert "| 1 | 1 | 1 | 0 % | 1 | 0 | 0 | 0 |" in text
+    assert outcome.RANGE in text

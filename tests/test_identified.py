@@ -6,7 +6,6 @@ import itertools
 import math
 
 import numpy as np
-import outcome
 import pandas as pd
 import pytest
 from studies import FOLDER, drawing
@@ -16,7 +15,6 @@ from bezierplan.analysis.audit import audit, identified
 from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.papers.song2016 import metrics as song2016
-from bezierplan.places import TREE
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -194,11 +192,3 @@ def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_i
     # A root to four decimals does not give it, nor does an odd number of straight moves.
     assert identified.of_moves(square, 32.3821, 1.4142).paths == []
     assert identified.of_moves(square, 15 + 13 * 1.414, 1.414).paths == []
-
-
-@pytest.mark.parametrize("file", ["numbers.csv", "numbers_papers_size.csv"])
-def test_a_number_that_is_identified_does_not_disagree(file):
-    numbers = pd.read_csv(TREE / outcome.KEPT / file).dropna(subset="identified")
-    assert len(numbers) == 11
-    assert set(numbers["verdict"]) == {"identified"}
-    assert numbers["why"].isna().all()

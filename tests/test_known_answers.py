@@ -24,7 +24,7 @@ from test_claims import (
 
 from bezierplan.analysis import measures
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.numbers import baseline_comparison, comparison
+from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.planners import warm_swarm
 from bezierplan.running import rides
@@ -213,56 +213,26 @@ def test_a_printed_number_is_possible_within_the_range_of_its_statistic(
     """Of twenty runs with values from 5 to 9; the mean is printed with one decimal."""
     row = {"statistic": statistic, "value_published": published, "least": 5.0, "most": 9.0}
     row |= {"decimals": 1 if statistic == "mean" else 6, "bound": 0.0, "metric": "objective"}
-    found = comparison._judged(row, None, 7.0, (6.0, 8.0), 20, np.empty(0))
-    assert found == {"possible": possible}
+    assert comparison.is_possible(row, 20) == possible
 
 
 @pytest.mark.parametrize(
-    ("published", "rivals", "power", "verdict", "why"),
+    ("found", "ours", "decimals", "shown", "below", "above"),
     [
-        (10.5, [8.0, 12.0], 1.0, "agrees", ""),
-        (10.5, [8.0, 10.0], 0.5, "agrees", ""),
-        (10.5, [8.0, 10.0, 10.2], 1 / 3, "inconclusive", comparison.TOO_WIDE),
-        # Ends of the interval, by half a unit of the last digit.
-        (10.5, [8.9, 11.1, 9.0, 11.0], 0.5, "agrees", ""),
-        # What no run can have counts for nothing; one rival is too few.
-        (10.5, [3.9, 25.0, 10.0, 10.1, 12.0], 1 / 3, "inconclusive", comparison.TOO_WIDE),
-        (10.5, [8.0], 0.0, "inconclusive", comparison.OFF_OURS),
-        (8.0, [8.0], 0.0, "disagrees", ""),
+        ((14.6, 31.4), 20.0, 0, (15, 31), 14, 32),
+        ((14.5, 31.5), 20.0, 0, (14, 32), 13, 33),  # what lies half a unit away belongs to it
+        ((10.0, 10.0), 10.0, 3, (9.99, 10.01), 9.989, 10.011),  # 0.1 % of ours to each side
+        ((32.3848, 32.3848), 32.3848, 4, (32.3524, 32.4172), 32.35, 32.42),
+        ((-math.inf, 3.0), 2.0, 1, (-math.inf, 3.0), -math.inf, 3.1),
     ],
 )
-def test_a_number_agrees_if_half_of_its_rivals_would_not(published, rivals, power, verdict, why):
-    """Ours is 10, the interval from 9 to 11; runs lie between 4 and 20."""
-    row = {"statistic": "mean", "value_published": published, "least": 4.0, "most": 20.0}
-    row |= {"decimals": 1, "bound": 0.0, "metric": "objective"}
-    in_range = 9 <= published <= 11
-    found = comparison._judged(row, in_range, 10.0, (9.0, 11.0), 20, np.array(rivals))
-    assert found["power"] == pytest.approx(power)
-    assert (found["verdict"], found["why"]) == (verdict, why)
-
-
-@pytest.mark.parametrize(("end", "power"), [(10.9, 1.0), (10.99, 0.0)])
-def test_without_rivals_a_number_a_tenth_off_ours_matters(end, power):
-    """11, which half a unit of the last digit may bring into the interval."""
-    row = {"statistic": "mean", "value_published": 10.5, "least": 4.0, "most": 20.0}
-    row |= {"decimals": 1, "bound": 0.0, "metric": "objective"}
-    found = comparison._judged(row, True, 10.0, (9.0, end), 20, np.empty(0))
-    assert found["power"] == power
-
-
-@pytest.mark.parametrize(("cpu", "restarts"), [(7.9, 1), (8.0, 2), (11.9, 2)])
-def test_a_method_starts_again_as_often_as_it_ends_in_the_time(cpu, restarts):
-    curve = ("polyline", [0.0, 0.0, 10.0, 0.0])
-    runs = [
-        {"method": method, "cpu_s": seconds, "condition": "a", "problem": "a", "evaluations": 1}
-        | {"length": 10.0, "bound": 10.0, "feasible": True}
-        | dict(zip(("path_curve", "path_points"), curve))
-        for method, seconds in (("base", 1.0), ("fast", 4.0), ("slow", cpu))
-    ]
-    found = baseline_comparison.measured(
-        {"e": SimpleNamespace(runs=pd.DataFrame(runs), problems={})}, "base"
-    )
-    assert found.set_index("method")["restarts"].to_dict() == {"fast": restarts, "slow": 1}
+def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, above):
+    low, high = comparison.as_printed(found, ours, decimals)
+    assert (low, high) == pytest.approx(shown)
+    assert comparison.position(above, low, high) == "above"
+    assert comparison.position(low, low, high) == comparison.position(high, low, high) == "inside"
+    assert below == low or comparison.position(below, low, high) == "below"
+    assert comparison.position(ours, math.nan, math.nan) == comparison.NO_RANGE
 
 
 # --------------------------------------------------------------------------------------------------

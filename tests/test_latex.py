@@ -7,6 +7,7 @@ import re
 import pandas as pd
 import pytest
 
+from bezierplan.analysis.numbers.comparison import SIGNS_MEAN
 from bezierplan.figures import latex
 
 
@@ -51,18 +52,28 @@ def test_a_wide_table_is_scaled_to_the_page():
 def test_printed_number_stands_above_ours_with_its_mark():
     times = ["0.01", "0.02"]
     ours = pd.DataFrame({"method": ["GA", "PRM"], "length": ["1.52", "2.10"], "time": times})
-    columns = ["table_row", "table_column", "as_printed", "verdict", "identified"]
+    columns = [
+        "table_row",
+        "table_column",
+        "as_printed",
+        "position",
+        "wide",
+        "low95_predicted",
+        "high95_predicted",
+    ]
     numbers = [
-        ("0", "0", "1.5", "agrees", "cells 1 2"),
-        ("1", "0", "3", "disagrees", ""),
-        ("0", "1", "4", "", ""),
+        ("0", "0", "1.5", "inside", "True", "1.4", "2"),
+        ("1", "0", "3", "above", "False", "", "2.2"),
+        ("0", "1", "4", "no range", "", "", ""),
     ]
     over = latex.laid_over(ours, pd.DataFrame(numbers, columns=columns), 1)
-    text = latex.document(over, "", "", [latex.LEGEND])
+    text = latex.document(over, "", "", [SIGNS_MEAN])
     assert r"\begin{tabular}{lrr}" in text
-    assert r"GA & \shortstack[r]{1.5 = \\ 1.52 +} & \shortstack[r]{4 \\ 0.01} \\" in text
-    assert r"PRM & \shortstack[r]{3 \\ 2.10 x} & \shortstack[r]{- \\ 0.02} \\" in text
     assert (
-        r"\footnotesize Above: printed; = a length of paths that we can name. Below: ours; + agrees"
+        r"GA & \shortstack[r]{1.5 \\ $\circ$ ours 1.4 to 2} & \shortstack[r]{4 \\ 0.01} \\" in text
+    )
+    assert (
+        r"PRM & \shortstack[r]{3 \\ $\uparrow$ ours at most 2.2} & \shortstack[r]{- \\ 0.02} \\"
         in text
     )
+    assert r"\footnotesize First the printed number, then the range of ours" in text

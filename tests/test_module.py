@@ -82,6 +82,7 @@ def test_a_module_with_a_prefix_makes_everything(folder):
     made = folder / "far/away/results/full"
     for name in (
         "baseline_comparison.csv",
+        "methods.csv",
         "index.html",
         "numbers.csv",
         "walk/claims.csv",

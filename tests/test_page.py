@@ -108,11 +108,10 @@ def test_addresses_of_different_cells_differ(keys, primary):
 def test_numbers_stand_beside_published_ones_with_how_near_they_are(content):
     table, more, _ = content.studies["one"].tables
     (first, second, third), other = table["numbers"], more["numbers"][-1]
-    assert (first["address"], first["near"], second["near"]) == (
-        "one/table1/a/length/mean",
-        True,
-        False,
-    )
+    assert first["address"] == "one/table1/a/length/mean"
+    for end in ("low", "high"):
+        assert first["bar"][end] == second["bar"][end], "one axis a column"
+    assert second["bar"]["ours"] > first["bar"]["ours"]
     assert math.isclose(second["apart"], 14 / 10.51 - 1)
     assert [cell["counted"] for cell in (first, second, third, other)] == [True] * 3 + [False]
     assert (other["value_published"], other["apart"]) == (None, None)
@@ -126,16 +125,16 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
         (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
         (["b"], [("10.51", "14.000", second), ("", "", None)]),
     ]
-    assert content.studies["one"].tables[0]["wholes"] == [], "few runs judge no column as a whole"
+    assert content.studies["one"].tables[0]["wholes"] == "", "few runs judge no column as a whole"
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     cell = {"method": "a", "metric": "length", "statistic": "count", "value_published": 5.0}
-    cell |= {"value_ours": 220.0, "value_ours_scaled": 5.5, "verdict": "agrees", "identified": None}
+    cell |= {"value_ours": 220.0, "value_ours_scaled": 5.5, "position": None}
     spec = job().studies["one"].tables["table1"].spec
     empty = pd.DataFrame()
     (found,) = reader._numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
-    assert (found["beside"], found["near"]) == (5.5, True)
+    assert found["beside"] == 5.5
     assert math.isclose(found["apart"], 0.1)
 
 
@@ -150,10 +149,9 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.baseline == []
-    assert own.tables[0]["wholes"] == [
-        f"length, {HOSTILE}: level fits; order reversed (rank correlation with "
-        "ours -0.5, expected 0 to 1). It decides nothing: a map of ours."
-    ]
+    assert own.tables[0]["wholes"] == (
+        f"length, {HOSTILE}: order reversed (rank correlation -0.5; ours 0 to 1)"
+    )
     alone = reader.studies(job(), folder, None)["one"]
     assert {claim["verdict"] for claim in alone.claims} > {"supported"}
 

@@ -223,7 +223,7 @@ QUESTIONS = [
     ("What is the mean objective of a?", ["one/table1/a/objective/mean"], "published 10.51"),
     ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best"),
     ("Why do claims fail", ["page-failures"], "The claim that fails, and why"),
-    ("What does inconclusive mean?", ["page-word/inconclusive"], "the interval is too wide"),
+    ("What does above mean?", ["page-word/above"], "lies above our range"),
     ("the path of a's worst feasible run", ["one/first/p/a/1"], "on the room"),
     ("a's worst failed run", ["one/first/p/a/2"], "failed run (1 of 3 fail), worst"),
 ]

@@ -46,15 +46,17 @@ def test_sentences_follow_from_the_kept_outcome(kept, study):
 def test_a_sentence_whose_numbers_change_is_computed_again(kept):
     rows = verdict.own_rows(kept, "ma2020")
     template = verdict.read(TREE / "config/studies/ma2020/verdict.yaml")
-    numbers = rows["numbers"].copy()
-    named = numbers.index[numbers["verdict"] == "identified"]
-    numbers.loc[named[0], "verdict"] = "disagrees"
-    *_, last = verdict.sentences(template, rows | {"numbers": numbers})
+    audit = rows["audit"].copy()
+    shortest = audit.index[
+        audit["place"].str.startswith("method=aco") & audit["place"].str.endswith("min")
+    ]
+    audit.loc[shortest[0], "printed"] -= 1
+    *_, last = verdict.sentences(template, rows | {"audit": audit})
     assert last.text.startswith("6 of 8 shortest lengths")
-    numbers.loc[named, "verdict"] = "disagrees"
-    *_, last = verdict.sentences(template, rows | {"numbers": numbers})
-    assert last.fails == "named > 4: 0 and 4.0"
-    text = verdict.markdown(template, rows | {"numbers": numbers}, {"aco": "ACO"})
+    audit.loc[shortest, "printed"] = 0
+    *_, last = verdict.sentences(template, rows | {"audit": audit})
+    assert last.fails == "named > 4: 0.0 and 4.0"
+    text = verdict.markdown(template, rows | {"audit": audit}, {"aco": "ACO"})
     assert "8 shortest" not in text
     assert "| ACO | " in text
 

@@ -14,6 +14,7 @@ rule baseline_comparison:
             },
             caption="../report/summary.rst",
         ),
+        "results/{scale}/methods.csv",
     log:
         "results/{scale}/baseline_comparison.log",
     conda:

@@ -186,8 +186,8 @@ class TableOfRuns(Job):
     variants: dict[str, str]
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
-    reconstructed: bool
-    """Whether a map that it shows is not printed."""
+    reconstructed: list[str]
+    """Problems on maps that the paper does not print."""
     fitted: dict[str, dict]
     """By metric, the numbers to which something was fitted."""
     paired: bool
@@ -327,23 +327,34 @@ class BaselineTable(Job):
 
     baselines: dict[str, tuple[str, str | None]]
     """By study, and the method that its paper proposes."""
+    families: dict[str, dict[str, dict[str, Any]]]
+    """By study: what the study declares."""
     repeats: dict[str, int]
     """By study/experiment."""
     with_baselines: bool = False
-    """Whether baselines have rows too."""
+    """Whether baselines have rows too, and there is no table of problems."""
 
     def run(self, input_files, output_files):
-        """Measure the methods."""
-        from bezierplan.analysis.numbers import baseline_comparison
+        """Measure the methods, beside the baselines and on each problem."""
+        from bezierplan.analysis import results
+        from bezierplan.analysis.numbers import baseline_comparison, methods
         from bezierplan.running import inputs
 
-        rows = baseline_comparison.of_studies(
-            self.baselines,
-            self.repeats,
-            inputs.group_by_experiment(self.shows, input_files),
-            self.with_baselines,
-        )
-        rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
+        files = inputs.group_by_experiment(self.shows, input_files)
+        found = {
+            place: results.read(files[place], number, place.partition("/")[2])
+            for place, number in self.repeats.items()
+        }
+        tables = [baseline_comparison.of_studies(self.baselines, found, self.with_baselines)]
+        if not self.with_baselines:
+            proposed = {study: method for study, (_, method) in self.baselines.items()}
+            families = {
+                study: {name: methods.Family(**each) for name, each in own.items()}
+                for study, own in self.families.items()
+            }
+            tables.append(methods.of_studies(proposed, families, found))
+        for table, file in zip(tables, output_files, strict=True):
+            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)

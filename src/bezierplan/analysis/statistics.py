@@ -6,7 +6,6 @@ longer than making a paper's tables.
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -257,40 +256,15 @@ def predicted_within(
     return drawn
 
 
-class Prediction(NamedTuple):
-    """A published number among those that experiments of the paper's size would print, judging by
-    our runs.
-
-    Attributes
-    ----------
-    quantile : float
-        Its position, ties counted half.
-    in_range : bool or None
-        Whether it is within the central 95 %, ties counted in its favour; None below `LEAST_RUNS`
-        values.
-    low, high : float
-        Ends of the central 95 %. If our values do not determine how far the least or the largest of
-        others may lie, an end is the least or the largest possible value, or infinite.
-    """
-
-    quantile: float
-    in_range: bool | None
-    low: float
-    high: float
-
-
 def prediction(
     name: str,
     values: np.ndarray,
-    published: float,
     size: int | None,
-    decimals: int | None,
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
     groups: list[np.ndarray] | None = None,
-) -> Prediction:
-    """Place a published number among the numbers that experiments of the paper's size would print,
-    judging by our values.
+) -> tuple[float, float]:
+    """Return the range in which 95 % of experiments of the paper's size end, judging by our values.
 
     Parameters
     ----------
@@ -298,14 +272,9 @@ def prediction(
         A name of `STATISTICS`.
     values : (n,) array
         Ours, without gaps.
-    published : float
-        The published number; nan if there is none.
     size : int or None
-        Number of values behind the published statistic; if None (not stated), the number is placed
-        among our single values.
-    decimals : int or None
-        Those of the printed number, to which ours are rounded before comparison; None to compare
-        without rounding.
+        Number of values behind the published statistic; if None (not stated), the range is that of
+        our single values.
     rng : Generator
         What experiments are drawn from.
     possible : tuple of float
@@ -315,20 +284,16 @@ def prediction(
 
     Returns
     -------
-    Prediction
-        Nan and None without values or without a published number.
+    tuple of float
+        NaN below `LEAST_RUNS` values. If our values do not determine how far the least or the
+        largest of others may lie, an end is the least or the largest possible value, or infinite.
     """
-    if not len(values) or math.isnan(published):
-        return Prediction(math.nan, None, math.nan, math.nan)
+    if len(values) < LEAST_RUNS:
+        return math.nan, math.nan
     least, most, tail = _experiments(name, values, size, rng, possible, groups)
     low = np.quantile(least, tail, method="lower")
     high = np.quantile(most, 1 - tail, method="higher")
-    if decimals is not None:
-        least, most = np.round(least, decimals), np.round(most, decimals)
-        published = round(published, decimals)
-    below, above = np.mean(most < published), np.mean(least > published)
-    in_range = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
-    return Prediction(float((below + 1 - above) / 2), in_range, float(low), float(high))
+    return float(low), float(high)
 
 
 def _experiments(
@@ -412,19 +377,6 @@ def _trimmed_mean(values: np.ndarray) -> float:
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
     cut = min(cut, (n - 1) // 2)
     return float(np.sort(values)[cut : n - cut].mean())
-
-
-def can_fail(
-    published: float, ours: float, ends: tuple[float, float], possible: tuple[float, float]
-) -> bool:
-    """Whether a number on the published one's side of ours can lie beyond the interval in which it
-    would be accepted.
-
-    It cannot if that end is infinite, or if no possible value lies beyond it. A number equal to
-    ours lies on both sides.
-    """
-    below, above = ends[0] > possible[0], ends[1] < possible[1]
-    return (published <= ours and below) or (published >= ours and above)
 
 
 def expanded_tail(n: int) -> float:

@@ -72,8 +72,7 @@ class TableValue(Model):
     defined: Flag = Field(
         True,
         description="whether the paper says what it counts here; if not, its numbers are shown "
-        "next to ours, but are all inconclusive; "
-        "left out: true",
+        "next to ours, but prove nothing; left out: true",
     )
     label: Line = Field(description="how the value is printed")
     decimals: Decimals = Field(
@@ -119,10 +118,6 @@ class Identify(Model):
         lt=2,
         description="the length of a diagonal move, such as 1.414, if the paths are of straight "
         "and diagonal moves instead; lengths are compared to its decimals",
-    )
-    counts: Flag = Field(
-        True,
-        description="whether a number that is such a length counts as identified; left out: true",
     )
     because: Line = Field(description="why the numbers may be such lengths, in words")
 

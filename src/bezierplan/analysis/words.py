@@ -1,4 +1,4 @@
-"""The verdicts on published numbers and on claims: how each is said, shown and counted
+"""Positions of published numbers, and verdicts on claims: how each is said, shown and counted
 (`words.csv`).
 """
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class Word(NamedTuple):
-    """A verdict.
+    """A position or a verdict.
 
     on: what it is on, `number` or `claim`. group: what it counts as in the outcome. counted: how a
     count says it. look: the class that colours it. symbol, sign: its mark on a page, and in print.
@@ -32,10 +32,10 @@ OTHER = Word("", "open", "", "open", "·", "", "")
 
 
 def on(what: str) -> dict[str, Word]:
-    """The verdicts on numbers, or on claims."""
+    """Return the positions of numbers, or the verdicts on claims."""
     return {name: word for name, word in WORDS.items() if word.on == what}
 
 
 def groups(what: str) -> dict[str, str]:
-    """Verdict -> what it counts as."""
+    """Return what each position or verdict counts as."""
     return {name: word.group for name, word in on(what).items()}

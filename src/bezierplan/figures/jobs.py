@@ -32,6 +32,7 @@ class Latex(Job):
         """Set the table."""
         import pandas as pd
 
+        from bezierplan.analysis.numbers import comparison
         from bezierplan.figures import latex
 
         table, *beside = (
@@ -40,7 +41,8 @@ class Latex(Job):
         )
         notes = [self.note] if self.note else []
         if beside:
-            table, notes = latex.laid_over(table, *beside, self.heads), [latex.LEGEND, *notes]
+            table = latex.laid_over(table, *beside, self.heads)
+            notes = [comparison.SIGNS_MEAN, *notes]
         text = latex.document(table, self.caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 

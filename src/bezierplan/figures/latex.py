@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import words
+from bezierplan.analysis.numbers.comparison import beside
 
 _SIGNS = {
     "\\": r"\textbackslash{}",
@@ -16,6 +16,12 @@ _SIGNS = {
     ">": r"\textgreater{}",
     "²": r"\textsuperscript{2}",
     "→": r"$\to$",
+    "●": r"$\bullet$",
+    "○": r"$\circ$",
+    "▲": r"$\uparrow$",
+    "△": r"$\triangle$",
+    "▼": r"$\downarrow$",
+    "▽": r"$\bigtriangledown$",
     "ζ": r"$\zeta$",
 }
 _SIGNS |= {sign: f"\\{sign}" for sign in "&%$#_{}"}
@@ -27,16 +33,9 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-_MARKS = {verdict: word.sign for verdict, word in words.on("number").items()}
-IDENTIFIED = f" {_MARKS.pop('identified')}"
-LEGEND = (
-    f"Above: printed;{IDENTIFIED} a length of paths that we can name. Below: ours; "
-    + ", ".join(f"{mark} {verdict}" for verdict, mark in _MARKS.items())
-)
-
-
 def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """A table with the printed number above ours in each cell, both with their marks.
+    """Return a table with the printed number above our range in each cell, or above ours without
+    one.
 
     numbers: its comparison, all text. heads: how many columns name the rows.
     """
@@ -44,9 +43,7 @@ def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataF
     over = np.where(cells == "", "-\n", "-\n" + cells)
     for number in numbers[numbers["table_row"] != ""].to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        above = number["as_printed"] + (IDENTIFIED if number["identified"] else "")
-        below = f"{cells[place]} {_MARKS.get(number['verdict'], '')}".strip()
-        over[place] = f"{above}\n{below}"
+        over[place] = f"{number['as_printed']}\n{beside(number) or cells[place]}"
     return ours.iloc[:, :heads].join(pd.DataFrame(over, ours.index, ours.columns[heads:]))
 
 
@@ -73,10 +70,7 @@ def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str]
     <BLANKLINE>
     """
     sides = "".join(
-        "r"
-        if _is_number(table[column].str.split("\n").str[0].str.removesuffix(IDENTIFIED))
-        else "l"
-        for column in table
+        "r" if _is_number(table[column].str.split("\n").str[0]) else "l" for column in table
     )
     cells = map(_row, table.itertuples(index=False))
     rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]

@@ -20,6 +20,9 @@ from bezierplan.study.experiments import Experiment
 
 DEFAULT = "default"
 
+MOST_REPEATS = 1000
+"""Repeats of a method under each condition with which readings are judged, at most."""
+
 
 def find_default(study: Study, assumption: AssumptionEntry) -> Any:
     """Return the value that runs use where an assumption leaves it to a setting: one for the
@@ -84,8 +87,16 @@ def build_joint_readings(study: Study) -> dict[str, Study]:
     """Return the study under each joint reading, with the claims that are judged under it, by the
     name of the folder of its results.
     """
+    experiments = {
+        name: content.but(
+            repeats=_limit(content.repeats, MOST_REPEATS),
+            chunk=_limit(content.chunk, MOST_REPEATS),
+        )
+        for name, content in study.experiments.items()
+    }
+    fewer = study.but(experiments=experiments)
     return {
-        each.folder: keep_claims(apply_values(study, each.values), select_claims(study, each))
+        each.folder: keep_claims(apply_values(fewer, each.values), select_claims(study, each))
         for each in study.readings
     }
 

@@ -129,6 +129,11 @@ class Checks:
                     self.names(compared)
                     for name in compared.experiments:
                         check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
+                    for name, family in compared.families.items():
+                        with self.at("families", name):
+                            check_known(family.experiment, compared.experiments, "experiment")
+                            listed = study.experiments[family.experiment].problems
+                            check_all(family.problems, listed, "problems")
         with self.at():
             named = " ".join(read_text(file, "") for file in study.folder.glob("*.yaml"))
             for file in map(Path, study.published_files()):

@@ -102,13 +102,15 @@ class Study(Experiments, ArtefactsFile):
         file = getattr(self.whole(table), "published", None)
         return file and shorten_path(self.folder / "published" / file)
 
-    def reconstructed(self, table: Pivot) -> bool:
-        """Whether runs of a table are on a map that the paper does not print."""
+    def reconstructed(self, table: Pivot) -> list[str]:
+        """Return the problems of a table on maps that the paper does not print."""
         problems = self.experiments[table.experiment].problems
         shown = convert_to_list(table.where.get("problem", problems))
-        return any(
-            self.workspace_of(name).origin == "reconstructed" for name in problems if name in shown
-        )
+        return [
+            name
+            for name in problems
+            if name in shown and self.workspace_of(name).origin == "reconstructed"
+        ]
 
     def own_methods(self, experiment: str, artefact: str) -> list[str]:
         """The methods of an experiment in a table or figure that selects none: without variants,

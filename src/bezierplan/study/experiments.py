@@ -200,6 +200,18 @@ class Experiment(Model):
         return self.seeds != "own"
 
 
+class FamilyEntry(Model):
+    """Problems that belong together in the table of methods."""
+
+    experiment: ExperimentName = Field(description="one of `experiments`")
+    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
+        [], description="names of its problems, by default all; not of drawn workspaces"
+    )
+    straight: Literal["free", "blocked"] = Field(
+        None, description="only the problems whose straight line from start to target is so"
+    )
+
+
 class BaselineEntry(Model):
     """The baseline with which the summary compares the study's methods."""
 
@@ -210,6 +222,11 @@ class BaselineEntry(Model):
     experiments: build_list_type(ExperimentName) = Field(
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"
+    )
+    families: dict[Line, FamilyEntry] = Field(
+        {},
+        description="name → problems of these experiments that belong together: a row of the table "
+        "of methods for each method",
     )
     worth: ExperimentName = Field(
         None,

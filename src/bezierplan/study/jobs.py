@@ -417,18 +417,19 @@ def build_baseline_comparison(
     """The methods of studies beside the baseline that these name, if they do. with_baselines:
     `build_worth`.
     """
-    baselines, repeats, shows = {}, {}, {}
+    baselines, families, repeats, shows = {}, {}, {}, {}
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
         for name in convert_to_list(beside.worth or []) if with_baselines else beside.experiments:
             baselines[key] = (beside.baseline, beside.proposed)
+            families[key] = {} if with_baselines else beside.plain().get("families", {})
             methods = [*study.experiments[name].methods, beside.baseline]
             if with_baselines:
                 methods = study.methods_of(name)
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
             shows[f"{key}/{name}"] = count_chunks(study, name, methods, scale)
-    return BaselineTable(baselines, repeats, with_baselines, shows=shows)
+    return BaselineTable(baselines, families, repeats, with_baselines, shows=shows)
 
 
 def build_summary(studies: Studies, scale: str) -> Summary:

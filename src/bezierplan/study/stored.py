@@ -70,7 +70,7 @@ def yield_jobs(
         else:
             continue
         yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
-    yield jobs.build_baseline_comparison(studies, scale), ["baseline_comparison.csv"]
+    yield jobs.build_baseline_comparison(studies, scale), ["baseline_comparison.csv", "methods.csv"]
     yield jobs.build_worth(studies, scale), ["worth.csv"]
     yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
     yield page.build_page(studies, scale, root), [PAGE]

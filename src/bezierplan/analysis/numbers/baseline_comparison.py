@@ -14,14 +14,10 @@ baseline's runs; the table has the median of these ratios over the conditions. C
 - bent: those of the compared conditions under which the baseline's path bends and has no corners
 - curvature: largest curvature over the baseline's under these conditions, feasible runs only;
   infinite for paths with corners
-- bending: bending energy over the baseline's, likewise
 - cpu: CPU time over the baseline's, all runs
 - gap, gap_low, gap_high: length over that of the exact shortest path, less 1, feasible runs only,
   and its 95 % bootstrap interval
 - evaluations: paths that a run evaluates
-- restarts: how many runs take the CPU time of one of the method that takes most
-- feasible_restarts, gap_restarts: as feasible and gap, of the shortest free path of so many runs
-  under a condition, medians over the conditions
 """
 
 import math
@@ -31,8 +27,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.results import Results, read
-from bezierplan.running.inputs import Files
+from bezierplan.analysis.results import Results
 from bezierplan.workspaces.seeds import generator
 
 COLUMNS = (
@@ -47,15 +42,11 @@ COLUMNS = (
     "length",
     "bent",
     "curvature",
-    "bending",
     "cpu",
     "gap",
     "gap_low",
     "gap_high",
     "evaluations",
-    "restarts",
-    "feasible_restarts",
-    "gap_restarts",
 )
 
 # A path whose largest curvature times its length is below this, in radians, is straight.
@@ -64,7 +55,7 @@ _STRAIGHT = 1e-6
 # In sentences, ratios closer to 1 than this are equal to it.
 EQUAL = 1e-3
 
-RATIOS = ("length", "curvature", "bending", "cpu")
+RATIOS = ("length", "curvature", "cpu")
 """Columns that are ratios to the baseline's."""
 
 BASELINE = "the exact shortest path with rounded corners"
@@ -92,8 +83,7 @@ def measured(
     bent = np.isfinite(pairs["curvature_baseline"]) & (
         pairs["curvature_baseline"] * pairs["length_baseline"] > _STRAIGHT
     )
-    for name in ("curvature", "bending"):
-        pairs[f"{name}_baseline"] = pairs[f"{name}_baseline"].where(bent)
+    pairs["curvature_baseline"] = pairs["curvature_baseline"].where(bent)
     for name in RATIOS:
         pairs[name] /= pairs[f"{name}_baseline"]
     methods = pairs.groupby("method", sort=False)
@@ -110,49 +100,37 @@ def measured(
             bent=counts["curvature"],
         )
     )
-    restarts = (rows["cpu"].max() / rows["cpu"]).astype(int)
-    gaps = {
-        name: _gaps(values[values["method"] == name], name, restarts[name]) for name in rows.index
-    }
+    gaps = {name: _gaps(values[values["method"] == name], name) for name in rows.index}
     rows = rows.join(pd.DataFrame.from_dict(gaps, orient="index"))
     return rows.reset_index(names="method").reindex(columns=COLUMNS[1:])
 
 
-def _gaps(values: pd.DataFrame, method: str, restarts: int) -> dict[str, float]:
+def _gaps(values: pd.DataFrame, method: str) -> dict[str, float]:
     """The columns about gaps of a method, from its rows of values."""
     free = np.sort(values["gap"].dropna())
     low, high = statistics.interval("median", free, generator(f"gap/{method}"))
-    # The shortest of k runs is below its median with the chance 1/2, so a single run is with the
-    # chance 1 - 2 ** (-1 / k).
-    conditions = values.fillna({"gap": np.inf}).groupby(["experiment", "condition"])["gap"]
-    best = conditions.agg(np.quantile, 1 - 0.5 ** (1 / restarts), method="inverted_cdf")
-    failing = conditions.agg(lambda gaps: np.isinf(gaps).mean())
     return {
         "gap": np.median(free) if len(free) else math.nan,
         "gap_low": low,
         "gap_high": high,
-        "restarts": restarts,
-        "feasible_restarts": (1 - failing**restarts).mean(),
-        "gap_restarts": best.median(),
     }
 
 
 def of_studies(
     baselines: Mapping[str, tuple[str, str | None]],
-    repeats: Mapping[str, int],
-    files: Mapping[str, Files],
+    results: Mapping[str, Results],
     with_baseline: bool = False,
 ) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    baselines: by study, each with the method that the paper proposes. repeats, files: of
-    experiments, each by `study/experiment`.
+    baselines: by study, each with the method that the paper proposes. results: by
+    `study/experiment`.
     """
     tables = []
     for study, (baseline, proposed) in baselines.items():
         experiments = {
-            place.partition("/")[2]: read(files[place], number, place.partition("/")[2])
-            for place, number in repeats.items()
+            place.partition("/")[2]: own
+            for place, own in results.items()
             if place.startswith(f"{study}/")
         }
         rows = measured(experiments, baseline, with_baseline)
@@ -168,7 +146,6 @@ def _values(results: Results) -> pd.DataFrame:
     return runs[["condition", "method"]].assign(
         length=metrics.values(runs, "length", problems),
         curvature=metrics.values(runs, "max_curvature", problems).mask(cornered, np.inf),
-        bending=metrics.values(runs, "bending_energy", problems).mask(cornered, np.inf),
         evaluations=runs["evaluations"],
         cpu=runs["cpu_s"],
         free=runs["feasible"].astype(bool),

@@ -15,8 +15,10 @@ from bezierplan.workspaces.problem import Path, Problem
 _OF_FREE = ["length", "excess", "curvature"]
 _MEDIANS = [*_OF_FREE, "evaluations", "cpu_s"]
 
-STORED = TREE / "docs" / "outcome" / "benchmark.csv"
-"""Summaries of the papers' methods, at the papers' numbers of runs."""
+_SCORED = ["problem", "method", "runs", "feasible", "excess", "evaluations"]
+
+STORED = TREE / "docs" / "outcome" / "methods.csv"
+"""What the papers' methods give on each problem."""
 
 
 def summaries(runs: pd.DataFrame) -> pd.DataFrame:
@@ -50,8 +52,9 @@ def scores(rows: pd.DataFrame) -> pd.DataFrame:
 
 def stored(experiment: str) -> pd.DataFrame:
     """The summaries of the papers' methods on an experiment, `study/name`."""
-    rows = pd.read_csv(STORED)
-    return rows[rows["experiment"] == experiment].drop(columns="experiment")
+    rows = pd.read_csv(STORED).rename(columns={"free": "feasible"})
+    study, _, name = experiment.partition("/")
+    return rows.loc[(rows["study"] == study) & (rows["experiment"] == name), _SCORED]
 
 
 def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path | None, float]]:

@@ -19,19 +19,14 @@ number. Columns:
   on their number
 - low95_ours, high95_ours: 95 % bootstrap interval of value_ours; empty below two runs, and for min,
   max and range
-- low95_predicted, high95_predicted: 95 % prediction interval for the number printed by an
-  experiment of n_published runs
-- quantile_published: quantile of the published number in experiments of n_published runs; in our
-  runs if n_published is empty
-- in_range: whether it lies in the central 95 %. Ours are rounded like the printed one, ties count;
-  empty for times, and below six runs
-- power: share of the numbers that matter (`_rivals`), without those that no run can have, that
-  would have been rejected instead of the published one
-- identified: cells or moves of the paths whose length the published number is (`identified`), and
-  the chance of a match
-- verdict: on ours: disagrees; inconclusive; agrees
-- why: why it is inconclusive: it decides nothing (`decides_nothing`), or the interval has no end
-  there, or contains most of the numbers that matter
+- low95_predicted, high95_predicted: the range of ours: what 95 % of experiments of n_published runs
+  would print, or of our runs if n_published is empty. It reaches at least `LEAST_REACH` of ours to
+  each side, and its ends are rounded outwards like the printed number (half a unit belongs to it)
+- position: the published number lies `below`, `inside` or `above` that range, or there is
+  `no range`: for times, and below six runs
+- wide: whether the range is too wide to tell: it holds at least half of the other numbers that the
+  paper prints for the metric and statistic in the same condition, or in all if there are none
+- reason: why the position proves nothing of the paper (`reasons`); empty if it may
 - possible: whether the metric can have the published value, and ranks add up. A length below the
   bound of our map is judged all the same
 - share_feasible: share of all runs whose path the certified checker accepts
@@ -43,53 +38,46 @@ number. Columns:
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.audit import identified, possible
+from bezierplan.analysis.audit import possible
 from bezierplan.analysis.numbers import tables
 from bezierplan.analysis.results import Results, groups, keys_of, printed_numbers, select
-from bezierplan.analysis.table_kinds import Identify, Pivot
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.model import convert_to_list
-from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
-LEAST_POWER = 0.5
-"""Share of the numbers that matter which an interval has to exclude before a number in it
-agrees.
-"""
+LEAST_REACH = 0.001
+"""A range reaches at least this share of ours to each side: ours may all be equal."""
 
-MATTERS = 0.1
-"""Where the paper prints too few numbers of other methods in a place, the number that differs from
-ours by this share, on the side of the published one, is the one that matters.
-"""
-
-LEAST_RIVALS = 2
-"""Numbers of other methods that a place needs to be those that matter: a power against a single one
-is all or nothing.
-"""
+WIDE = 0.5
+"""A range that holds this share of the other printed numbers is too wide to tell."""
 
 PLACES = ["table_row", "table_column", "as_printed"]
 """Columns beside those of a comparison, for a table of the paper's form: the place of the number in
 the table's file, counted from 0 below its head and right of the names of rows, and its text.
 """
 
-NO_END = "interval without an end on that side"
-TOO_WIDE = "interval that contains most numbers of the competing methods"
-OFF_OURS = f"interval that contains the number {100 * MATTERS:g} % off ours, or no run has it"
-"""Why a number in the interval is inconclusive: the test could not have failed, or has no power
-against printed numbers, or against ours.
-"""
+NO_RANGE = "no range"
+RANGE = ["low95_predicted", "high95_predicted", "position"]
 
-FITTED = "number to which something was fitted"
+SIGNS = {"below": "▼▽", "inside": "●○", "above": "▲△"}
+"""Position -> its sign in print, and that beside a range that is too wide to tell."""
+SIGNS_MEAN = (
+    "First the printed number, then the range of ours (95 % of experiments of the paper's size): "
+    "● inside, ▲ above it, ▼ below it; hollow signs: our range is too wide to tell"
+)
+
+FITTED = "we fitted something to it"
 ONE_DRAW = "one draw of a random map"
-NO_MAP = "map that the paper does not print"
-UNDEFINED = "quantity that the paper does not define"
-"""Why a number decides nothing, wherever it lies (`decides_nothing`)."""
+NO_MAP = "the map is ours"
+UNDEFINED = "not defined in the paper"
+"""Reasons why the position of a number proves nothing of the paper."""
 
 COLUMNS = [
     "metric",
@@ -105,12 +93,9 @@ COLUMNS = [
     "high95_ours",
     "low95_predicted",
     "high95_predicted",
-    "quantile_published",
-    "in_range",
-    "power",
-    "verdict",
-    "why",
-    "identified",
+    "position",
+    "wide",
+    "reason",
     "possible",
     "share_feasible",
     "bound",
@@ -143,7 +128,7 @@ def compare(
     variant_of: dict[str, str],
     baselines: list[str],
     name: str,
-    reconstructed: bool = False,
+    reconstructed: Collection[str] = (),
     fitted: dict[str, dict] | None = None,
 ) -> pd.DataFrame:
     """The published numbers of a table next to ours, in the order of the table; the columns are
@@ -153,7 +138,7 @@ def compare(
     method whose published numbers it is compared with. baselines: methods without a published
     number. Variants of the table's methods and baselines get rows, whether or not the table shows
     them. name: `study/table`, which seeds each row's random draws. reconstructed, fitted: as in
-    `decides_nothing`.
+    `reasons`.
     """
     key_columns = keys_of(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
@@ -176,63 +161,57 @@ def compare(
     if spec.printed:
         _refuse_lost(both, spec, name)
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    printed = {
-        column: published[column].to_numpy()
-        for column in [*key_columns, "metric", "statistic", "value"]
-    }
-    rows = [
-        _described(row, keys, name, _rivals(row, key_columns, printed))
-        | {"identified": _identified(row, spec.identify, results.problems)}
-        for row in both.to_dict("records")
-    ]
-    described = pd.DataFrame(rows, index=both.index)
+    described = pd.DataFrame(
+        [_described(row, keys, name) for row in both.to_dict("records")], index=both.index
+    )
     table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    reasons = decides_nothing(both, spec, reconstructed, fitted or {})
-    open_ones = (reasons != "") & table["in_range"].notna()
-    table["verdict"] = table["verdict"].mask(open_ones, "inconclusive")
-    table["why"] = table["why"].mask(open_ones, reasons)
+    table["wide"] = _wide(both.join(table[RANGE]), published, key_columns)
+    table["reason"] = reasons(both, spec, reconstructed, fitted or {})
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
     whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
-    marks = ("in_range", "possible")
+    marks = ("wide", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
-def decides_nothing(
-    numbers: pd.DataFrame, spec: Pivot, reconstructed: bool, fitted: dict[str, dict]
+def reasons(
+    numbers: pd.DataFrame, spec: Pivot, reconstructed: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
-    """Why each number of a table neither agrees nor disagrees with ours, wherever it lies; empty if
-    it may. The rule of evidence:
+    """Return why each number of a table proves nothing of the paper, wherever it lies; empty if it
+    may: our definition or our map may be wrong, or something was fitted to the number.
 
-    - A quantity that the paper does not define, or a map that it does not print (`reconstructed`,
-      or one draw of a random one), decides nothing: our definition or our map may be wrong. How
-      near such numbers are is told, and a path that has such a length is named.
-    - A number to which something was fitted confirms nothing. fitted: metric -> which numbers of
-      the table are such (column -> value or list of values).
+    reconstructed: problems on maps that the paper does not print. fitted: metric -> which numbers
+    of the table are such (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
     printed = numbers.assign(method=numbers.get("printed_method"))
     was_fitted = pd.Series(False, numbers.index)
     for metric, where in fitted.items():
         was_fitted |= printed.index.isin(select(printed, where | {"metric": metric}).index)
-    reasons = pd.Series("", numbers.index)
+    redrawn = numbers["by_run"].map(
+        lambda runs: not runs.index.unique("problem").intersection([*reconstructed]).empty,
+        na_action="ignore",
+    )
+    found = pd.Series("", numbers.index)
     for reason, whose in (
         (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
-        (NO_MAP, pd.Series(reconstructed, numbers.index)),
+        (NO_MAP, redrawn.eq(True)),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
-        reasons = reasons.mask(whose, reason)
-    return reasons
+        found = found.mask(whose, reason)
+    return found
 
 
-def counted_as(numbers: pd.DataFrame) -> pd.Series:
-    """The verdict by which each printed number counts: that a path has its length is a statement on
-    that number alone, and goes before the verdict on ours.
-    """
-    return numbers["verdict"].mask(numbers["identified"].notna(), "identified")
+def position(published: float, low: float, high: float) -> str:
+    """Return where a published number lies beside our range; NaN is no range."""
+    if published < low:
+        return "below"
+    if published > high:
+        return "above"
+    return "inside" if low <= published <= high else NO_RANGE
 
 
 def _quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
@@ -263,24 +242,6 @@ def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
             f"{name}: {len(lost)} printed numbers have no cell in the table, such as "
             f"{first['as_printed']} ({place})"
         )
-
-
-def _identified(
-    row: dict[str, Any], entries: list[Identify], problems: dict[str, Problem]
-) -> str | None:
-    """The paths whose length a published number is, in words; None if no enumeration that counts
-    finds one, or chance may well have.
-    """
-    problem = problems.get(row.get("problem", row.get("workspace")))
-    if pd.isna(row["value_published"]) or problem is None:
-        return None
-    for entry in entries:
-        if entry.counts and identified.applies(entry, row):
-            value, decimals = row["value_published"], int(row["decimals"])
-            found = identified.sought(entry, problem, value, decimals)
-            if found and found.paths and found.chance < identified.UNLIKELY:
-                return identified.in_words(found)
-    return None
 
 
 def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
@@ -323,30 +284,37 @@ def _side_by_side(
     return both
 
 
-def _rivals(
-    row: dict[str, Any], key_columns: list[str], printed: dict[str, np.ndarray]
-) -> np.ndarray:
-    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys.
-
-    printed: the columns of all its numbers (m,), by name; key_columns: those that are keys.
+def _wide(
+    numbers: pd.DataFrame, published: pd.DataFrame, key_columns: list[str]
+) -> list[bool | None]:
+    """Return whether the range of each number holds at least half of the other printed numbers of
+    its metric, statistic and condition, or in all conditions if its own has none; None without a
+    range. numbers: with the columns of `RANGE`.
     """
-    if "method" not in key_columns or pd.isna(row["value_published"]):
-        return np.empty(0)
-    keys = [key for key in ("metric", "statistic", *key_columns) if key != "method"]
-    same_place = np.logical_and.reduce([printed[key] == row[key] for key in keys])
-    # A variant's own name is in no published row; its number is that of its published method.
-    own = printed["method"] == row["printed_method"]
-    return printed["value"][same_place & ~own].astype(float)
+    places = [key for key in key_columns if key != "method"]
+    alike = dict([*published.groupby(["metric", "statistic"])])
+    wide: list[bool | None] = []
+    for row in numbers.to_dict("records"):
+        if pd.isna(row["position"]) or row["position"] == NO_RANGE:
+            wide.append(None)
+            continue
+        # A variant's own name is in no published row; its number is that of its published method.
+        own = {key: row["printed_method" if key == "method" else key] for key in key_columns}
+        same = alike[row["metric"], row["statistic"]]
+        others = same[(same[key_columns] != pd.Series(own)).any(axis=1)]
+        here = others[(others[places] == pd.Series(own)[places]).all(axis=1)]
+        values = (others if here.empty else here)["value"].astype(float)
+        held = values.between(row["low95_predicted"], row["high95_predicted"])
+        wide.append(bool(held.mean() >= WIDE))
+    return wide
 
 
-def _described(
-    row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray
-) -> dict[str, Any]:
+def _described(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any]:
     """Our side of one row, and the published number's position in it; empty for a published number
     without runs of ours.
     """
     if pd.isna(row["runs"]):
-        return {"n_ours": 0, "n_asked": 0, "in_range": None, "possible": None}
+        return {"n_ours": 0, "n_asked": 0, "position": NO_RANGE, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
@@ -358,67 +326,83 @@ def _described(
     low, high = statistics.interval(of_units, units, generator(f"{row_name}/interval"))
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
-    published, single = row["value_published"], (row["least"], row["most"])
-    rng, decimals = generator(f"{row_name}/prediction"), row["decimals"]
-    placed = statistics.prediction(
-        statistic, numbers, published, size, decimals, rng, single, within
-    )
-    # Seconds of another machine are shown, not judged.
-    in_range = None if row["unit"] == "s" else placed.in_range
-    ours, predicted = statistics.statistic(statistic, numbers), (placed.low, placed.high)
-    return {
+    scaled = statistics.scaled(statistic, numbers, int(row["size"]), size)
+    cell = {
         "n_ours": len(numbers),
         "n_asked": int(row["size"]),
-        "value_ours": ours,
-        "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["size"]), size),
+        "value_ours": statistics.statistic(statistic, numbers),
+        "value_ours_scaled": scaled,
         "low95_ours": low,
         "high95_ours": high,
-        "low95_predicted": placed.low,
-        "high95_predicted": placed.high,
-        "quantile_published": placed.quantile,
-        "in_range": in_range,
-        **_judged(row, in_range, ours, predicted, size, rivals),
+    }
+    published, single = row["value_published"], (row["least"], row["most"])
+    if pd.isna(published):
+        return cell | {"position": None, "possible": None}
+    decimals = row["decimals"]
+    cell["possible"] = is_possible(row, size)
+    if row["unit"] == "s":  # of another machine
+        return cell | {"position": NO_RANGE}
+    rng = generator(f"{row_name}/prediction")
+    found = statistics.prediction(statistic, numbers, size, rng, single, within)
+    low, high = as_printed(found, scaled, decimals)
+    return cell | {
+        "low95_predicted": low,
+        "high95_predicted": high,
+        "position": position(published, low, high),
     }
 
 
-def _judged(
-    row: dict[str, Any],
-    in_range: bool | None,
-    ours: float,
-    prediction: tuple[float, float],
-    size: int | None,
-    rivals: np.ndarray,
-) -> dict[str, Any]:
-    """Whether the test of one row could have failed, its power, and its verdict; empty if it is not
-    judged.
+def as_printed(
+    found: tuple[float, float], ours: float, decimals: int | None
+) -> tuple[float, float]:
+    """Return a range of least reach whose ends are the outermost printed numbers that lie in it by
+    half a unit of their last digit; without decimals, the range.
+
+    >>> as_printed((14.6, 31.4), 20.0, 0), as_printed((5.0, 5.0), 5.0, 3)
+    ((15.0, 31.0), (4.995, 5.005))
     """
-    published = row["value_published"]
-    if pd.isna(published):
-        return {"possible": None}
-    limits = _limits(row["statistic"], (row["least"], row["most"]), size)
-    half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
-    cell = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
-    if in_range is None:
-        return cell
-    ends = (prediction[0] - half, prediction[1] + half)
-    # To exclude a number that no run can have, or one on the other side of ours, says nothing.
-    least = row["bound"] if row["metric"] in metrics.AT_LEAST_A_LENGTH else -math.inf
-    near = np.array([ours * (1 + math.copysign(MATTERS, (published - ours) * ours))])
-    rivals, near = (
-        numbers[~((numbers < max(limits[0], least) - half) | (numbers > limits[1] + half))]
-        for numbers in (rivals, near)
+    reach = LEAST_REACH * abs(ours)
+    low, high = min(found[0], ours - reach), max(found[1], ours + reach)
+    if pd.isna(decimals) or math.isnan(low):
+        return low, high
+    unit = 10.0**-decimals
+    ends = (
+        end if math.isinf(end) else round(whole(end / unit) * unit, decimals)
+        for end, whole in (
+            (low, lambda end: math.ceil(end - 0.5 - 1e-9)),
+            (high, lambda end: math.floor(end + 0.5 + 1e-9)),
+        )
     )
-    enough = len(rivals) >= LEAST_RIVALS
-    others = rivals if enough else near
-    beyond = (others < ends[0]) | (others > ends[1])
-    power = float(beyond.mean()) if len(others) else 0.0
-    why = ""
-    if in_range and not statistics.can_fail(published, ours, prediction, limits):
-        why = NO_END
-    elif in_range and power < LEAST_POWER:
-        why = TOO_WIDE if enough else OFF_OURS
-    verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
-    return cell | {"power": power, "verdict": verdict, "why": why}
+    return tuple(map(float, ends))
+
+
+def beside(number: Mapping[str, Any]) -> str:
+    """Return a published number's sign and our range; empty without a range. number: a row, of
+    which an empty cell is None, NaN or "".
+
+    >>> beside({"position": "above", "wide": False, "low95_predicted": 15, "high95_predicted": 32})
+    '▲ ours 15 to 32'
+    """
+    if number["position"] not in SIGNS:
+        return ""
+    narrow, wide = SIGNS[number["position"]]
+    return f"{wide if str(number['wide']) == 'True' else narrow} ours {range_text(number)}"
+
+
+def range_text(number: Mapping[str, Any]) -> str:
+    """Return our range in words; an end that our runs do not determine is left out."""
+    ends = [number["low95_predicted"], number["high95_predicted"]]
+    low, high = (math.inf if end in ("", None) else float(end) for end in ends)
+    if not math.isfinite(low):
+        return f"at most {high:.10g}" if math.isfinite(high) else "any"
+    return f"{low:.10g} to {high:.10g}" if math.isfinite(high) else f"at least {low:.10g}"
+
+
+def is_possible(row: Mapping[str, Any], size: int | None) -> bool:
+    """Return whether runs can have the published number, up to half a unit of its last digit."""
+    low, high = _limits(row["statistic"], (row["least"], row["most"]), size)
+    half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
+    return low - half <= row["value_published"] <= high + half
 
 
 def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:

@@ -11,10 +11,10 @@ from bezierplan.analysis import words
 from bezierplan.analysis.numbers import baseline_comparison, comparison
 
 PAPERS = {
-    "word": "outcome",
-    "tested": "numbers that can be tested",
-    "agree": "of these we reproduce",
-    "close": "ours within 10 %",
+    "numbers": "printed numbers",
+    "narrow": "our range can tell",
+    "inside": "of these inside it",
+    "off": "typically off by",
     "hold": "claims that hold",
     "partly": "hold in part",
     "fail": "fail",
@@ -30,16 +30,6 @@ METHODS = {
 }
 """Columns of the table of proposed methods -> their headings, likewise."""
 
-LEGEND = (
-    "A paper's word follows from the claims of its abstract and conclusion. A number *reproduces* "
-    "if it lies in our 95 % prediction interval, narrow enough to rule out other plausible values, "
-    "or is the length of a path that we can name. Most *cannot be tested*: the paper does not "
-    "print the map, or define the quantity."
-)
-
-CLOSE = 0.1
-"""Relative deviation up to which a number is close to the printed one."""
-
 
 class Headline(NamedTuple):
     """sentences: numbers, claims, and methods beside the baseline, as far as there are any. papers,
@@ -51,21 +41,22 @@ class Headline(NamedTuple):
     methods: pd.DataFrame
 
 
-def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
-    """One row per study: the published numbers that count, in total and by verdict of the test
-    (`comparison`), and claims by verdict.
+def positions(numbers: pd.DataFrame) -> dict[str, int | str]:
+    """Return how many printed numbers there are, for how many our range is narrow enough to tell,
+    how many of these lie inside and outside it, and the median distance from ours.
 
-    numbers: as from `numbers`. claims: as from `claims.judge`. Only the default reading and
-    variants count.
+    numbers: those that count.
     """
-    judged = numbers[numbers["counted"]]
-    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
-    counts, verdicts = (
-        pd.crosstab(rows["study"], rows["verdict"]).reindex(columns=[*words.on(what)], fill_value=0)
-        for rows, what in ((judged, "number"), (deciding, "claim"))
-    )
-    counts.insert(0, "numbers", counts.sum(axis=1))
-    return counts.join(verdicts, how="outer").fillna(0).astype(int)
+    told = numbers[~numbers["wide"].astype(bool)]
+    inside = int((told["position"] == "inside").sum())
+    distances = deviations(numbers)
+    return {
+        "numbers": len(numbers),
+        "narrow": len(told),
+        "inside": inside,
+        "outside": len(told) - inside,
+        "off": f"{100 * np.median(distances):.2g} %" if len(distances) else "",
+    }
 
 
 def headline(
@@ -76,21 +67,21 @@ def headline(
     numbers: as from `summary.numbers`. claims: as from `claims.judge`. measures: as from
     `baseline_comparison.measured`, of all studies. titles: of the studies, by name.
     """
-    counts = outcome(numbers, claims)
-    grouped = {what: _grouped(counts, what) for what in ("number", "claim")}
+    counted = numbers[numbers["counted"].astype(bool)]
+    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
+    groups = words.groups("claim")
+    names = [*dict.fromkeys(groups.values())]
+    judged = pd.crosstab(deciding["study"], deciding["verdict"].map(groups))
+    studies = {*counted["study"], *deciding["study"]}
+    order = sorted(studies, key=list(titles).index)
+    judged = judged.reindex(index=order, columns=names, fill_value=0)
     sentences = [
-        _of_numbers(grouped["number"].sum()),
-        _of_claims(grouped["claim"].sum()) if len(claims) else "",
+        sentence_of_numbers(counted),
+        _of_claims(judged.sum()) if len(claims) else "",
         beside_baseline(measures),
     ]
-    tested, counted = grouped["number"], numbers[numbers["counted"].astype(bool)]
-    papers = grouped["claim"].assign(
-        word=[word(claims[claims["study"] == study]) for study in counts.index],
-        tested=tested["agree"] + tested["disagree"],
-        agree=tested["agree"],
-        close=[_close(counted[counted["study"] == study]) for study in counts.index],
-    )
-    order = sorted(counts.index, key=list(titles).index)
+    of_studies = [positions(counted[counted["study"] == study]) for study in order]
+    papers = judged.join(pd.DataFrame(of_studies, index=order))
     proposed = measures[measures["proposed"].astype(bool)].set_index("study")
     methods = pd.DataFrame.from_dict(
         {study: _measured(proposed.loc[study]) for study in order if study in proposed.index},
@@ -105,25 +96,11 @@ def headline(
     )
 
 
-def word(claims: pd.DataFrame) -> str:
-    """A paper in a word, from its claims of abstract and conclusion: whether all of those that can
-    be decided hold, or none.
-    """
-    main = claims[claims["primary"] & claims["main"].astype(bool)]
-    groups = main["verdict"].map(words.groups("claim"))
-    decided = groups[groups != "open"]
-    if decided.empty:
-        return "cannot be told"
-    if (decided == "hold").all():
-        return "reproduced"
-    return "not reproduced" if (decided == "fail").all() else "in part"
-
-
 def deviations(numbers: pd.DataFrame) -> np.ndarray:
     """|ours - published| / |published| of numbers, infinite beside a 0. Ours are scaled to the
     paper's number of runs. Quantities that the paper does not define say nothing.
     """
-    numbers = numbers[numbers["why"] != comparison.UNDEFINED]
+    numbers = numbers[numbers["reason"] != comparison.UNDEFINED]
     published, ours = (
         numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
     )
@@ -154,15 +131,23 @@ def beside_baseline(measures: pd.DataFrame) -> str:
     return f"{text}, and {len(smoother)} a smoother one, {low} to {high} times as long."
 
 
-def _of_numbers(counts: pd.Series) -> str:
-    """How many printed numbers can be tested, and how many reproduce. counts: by group."""
-    total, agree = int(counts.sum()), int(counts["agree"])
-    return (
-        f"Of {baseline_comparison.counted(total, 'printed number')} {agree + counts['disagree']} "
-        f"can be tested; of these we reproduce {agree}."
-        if total
-        else ""
+def sentence_of_numbers(numbers: pd.DataFrame) -> str:
+    """Return what the positions of the printed numbers that count say together; empty without."""
+    if numbers.empty:
+        return ""
+    found = positions(numbers)
+    other = len(numbers) - int(found["narrow"])
+    text = (
+        f"Of {baseline_comparison.counted(len(numbers), 'printed number')} our range is narrow "
+        f"enough to tell for {found['narrow']}: {found['inside']} lie inside it, "
+        f"{found['outside']} outside."
     )
+    if other:
+        text += f" The other {other} would fit almost anything."
+    ours = int((numbers["reason"] == comparison.NO_MAP).sum())
+    if ours:
+        text += f" For {ours} the paper prints no map, so neither proves it right or wrong."
+    return text
 
 
 def _of_claims(counts: pd.Series) -> str:
@@ -172,17 +157,6 @@ def _of_claims(counts: pd.Series) -> str:
         f"{counts['partly']} hold in part, {counts['fail']} fail, and {counts['open']} cannot be "
         "decided."
     )
-
-
-def _close(numbers: pd.DataFrame) -> str:
-    off = deviations(numbers)
-    return f"{(off <= CLOSE).sum()} of {len(off)}"
-
-
-def _grouped(counts: pd.DataFrame, what: str) -> pd.DataFrame:
-    """How many numbers or claims of each study count as each group. counts: by verdict."""
-    groups = words.groups(what)
-    return counts[[*groups]].T.groupby(groups, sort=False).sum().T
 
 
 def _measured(row: pd.Series) -> dict[str, str]:

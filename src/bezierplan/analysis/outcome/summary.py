@@ -63,7 +63,7 @@ def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     """Every row of comparisons that has a published number, in their order.
 
     comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted
-    (the row is primary, can be judged, and adds information: `_counted`), then the others of the
+    (the row is primary, has a range, and adds information: `_counted`), then the others of the
     comparisons, key columns first.
     """
     frames = [
@@ -77,22 +77,21 @@ def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     last = everything.columns[everything.columns.get_loc("metric") :].difference(first, sort=False)
     keys = list(everything.columns.difference([*first, *last], sort=False))
     everything["counted"] = _counted(everything, keys)
-    everything["verdict"] = comparison.counted_as(everything)
-    everything["why"] = everything["why"].mask(everything["identified"].notna())
     return everything[[*first, "counted", *keys, *last]]
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Which rows (n,) count in the denominator: those that are primary and judged, except numbers
-    that are impossible on any map, repetitions of a number in another table, and the last of
-    several counts that add up to the number of runs.
+    """Which rows (n,) count in the denominator: those that are primary and have a range, but
+    numbers that are impossible on any map, repetitions of a number in another table, and the
+    last of several counts that add up to the number of runs.
     """
     # A length below the bound is impossible on our map alone.
     of_map = (
         numbers["metric"].map(lambda metric: isinstance(METRICS[metric].least, str)).astype(bool)
     )
     possible = numbers["possible"].astype("boolean").fillna(True) | of_map
-    counted = (numbers["primary"] & numbers["in_range"].notna() & possible).to_numpy(dtype=bool)
+    placed = numbers["position"] != comparison.NO_RANGE
+    counted = (numbers["primary"] & placed & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         listed = list(rows.iterrows())

@@ -144,7 +144,7 @@ def markdown(
     headings = {column: heading for heading, column in verdict.table.columns.items()}
     rows = _rows(tables[verdict.table.of], verdict.table.where, *headings)
     shown = rows[list(headings)].replace(dict(labels)).rename(columns=headings)
-    for heading in shown.select_dtypes("number"):
+    for heading in shown.dropna(axis=1, how="all").select_dtypes("number"):
         values = shown[heading]
         # A printed number is looked up in the paper; of the others four digits of the largest.
         as_printed = heading == headings.get("value_published") or (values.dropna() % 1 == 0).all()

@@ -13,7 +13,7 @@ from typing import Any
 
 from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
-from bezierplan.analysis.numbers import baseline_comparison
+from bezierplan.analysis.numbers import baseline_comparison, comparison
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.proof import made_by
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
@@ -140,6 +140,8 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "heading": naming.heading,
         "amount": naming.amount,
         "counts": counts,
+        "positions": positions,
+        "range_text": comparison.range_text,
         "packed": packed,
         "failing": answer.failing,
         "labelled": labelled,
@@ -194,10 +196,30 @@ def labelled(text: Any, labels: dict[str, str]) -> str:
 
 
 def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
-    """How many rows there are of each verdict, in the order of `words.WORDS`."""
+    """Return how many rows there are of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
     names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
+
+
+def positions(cells: Iterable[reader.Row]) -> str:
+    """Return how many numbers of a table lie inside our range, and why they prove nothing, where
+    all share the reason.
+    """
+    placed = [cell for cell in cells if cell["bar"]]
+    if not placed:
+        return ""
+    told = [cell for cell in placed if not cell["wide"]]
+    inside = sum(cell["position"] == "inside" for cell in told)
+    text = f"{inside} of {len(told)} printed numbers inside our range"
+    if len(told) < len(placed):
+        wide = f"of {len(placed)} printed numbers our range is too wide to tell for "
+        wide += f"{len(placed) - len(told)}"
+        text = f"{text}; {wide}" if told else wide[0].upper() + wide[1:]
+    reasons = {cell["reason"] for cell in placed}
+    if len(reasons) == 1 and (reason := reasons.pop()):
+        text += f". This proves nothing: {reason}"
+    return text
 
 
 def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:

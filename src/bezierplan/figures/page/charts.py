@@ -1,52 +1,38 @@
 """Places of what the charts of the page show; the templates draw them."""
 
-import math
 from itertools import groupby
-from types import SimpleNamespace
+from typing import Any
 
-from bezierplan.figures.page.reader import Row
+from bezierplan.analysis.numbers.comparison import NO_RANGE
 
-MOST_TIMES = 8.0
-"""An axis of ratios reaches from one over this to this."""
-
-
-def along(ratio: float) -> float:
-    """The place of a ratio on a logarithmic axis from 0 to 100; at an end for one beyond it."""
-    low, high = 1 / MOST_TIMES, MOST_TIMES
-    share = math.log(min(max(ratio, low), high) / low) / math.log(high / low)
-    return round(100 * share, 2)
+Row = dict[str, Any]
 
 
-def ratios(studies: list[SimpleNamespace]) -> list[Row]:
-    """Ours over published, a row for each table, from the lowest number to the highest, each with
-    the interval that its verdict rests on; a ratio with 0 has no place.
+def add_bars(cells: list[Row]) -> None:
+    """Add bars to numbers with a range, on one axis a column: places from 0 to 100 of the ends of
+    our range, of ours, and of the printed number.
     """
-    rows = []
-    for study in studies:
-        for table in study.tables:
-            numbers = [
-                cell
-                for cell in table["numbers"]
-                if cell["counted"] and cell["apart"] is not None and cell["apart"] > -1
-            ]
-            dots = [
-                {
-                    "number": cell,
-                    "at": along(1 + cell["apart"]),
-                    "ends": [
-                        along((end or edge) / cell["value_published"])
-                        for end, edge in (
-                            (cell["low95_predicted"], 1e-9),
-                            (cell["high95_predicted"], 1e9),
-                        )
-                    ],
-                }
-                for cell in sorted(numbers, key=lambda cell: cell["apart"])
-                if cell["value_published"] > 0
-            ]
-            if dots:
-                rows.append({"study": study, "table": table, "dots": dots})
-    return rows
+    columns: dict[Any, list[Row]] = {}
+    for cell in cells:
+        cell["bar"] = None
+        if cell["value_published"] is not None and cell["position"] not in (None, NO_RANGE):
+            columns.setdefault(cell.get("table_column", cell["column"]), []).append(cell)
+    for column in columns.values():
+        marks = [(cell["beside"], cell["value_published"]) for cell in column]
+        ends = [(cell["low95_predicted"], cell["high95_predicted"]) for cell in column]
+        reach = [each for pair in marks + ends for each in pair if each is not None]
+        low, high = min(reach), max(reach)
+        width = high - low or 1.0
+        for cell, (ours, printed), (left, right) in zip(column, marks, ends, strict=True):
+            cell["bar"] = {
+                name: round(4 + 92 * (value - low) / width, 1)
+                for name, value in (
+                    ("ours", ours),
+                    ("printed", printed),
+                    ("low", low if left is None else left),
+                    ("high", high if right is None else right),
+                )
+            }
 
 
 def forests(comparisons: list[Row]) -> list[list[Row]]:

@@ -12,19 +12,13 @@ import pandas as pd
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
-from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
 from bezierplan.running.inputs import choose_tree
 
 Row = dict[str, Any]
-
-NEAR = 0.1
-"""A number of ours this near to the published one, as a share of it, counts as near."""
-
-WHOLE = ("level", "spread", "order")
-"""What is told of a column of means as a whole."""
 
 
 def read(file: str | Path) -> pd.DataFrame:
@@ -46,7 +40,7 @@ def of_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
 
 class Evidence(NamedTuple):
     """What many runs say of all studies: their numbers, claims, comparisons with the baseline,
-    comparisons of claims, and columns as wholes.
+    comparisons of claims, and level and order of columns.
     """
 
     numbers: pd.DataFrame
@@ -69,7 +63,7 @@ def studies(
     """All studies, from the files in the folder of a scale, which are the mirror of the papers.
 
     summary: numbers, claims and comparisons with the baseline of all studies, if the scale has
-    them. evidence: what stands in place of the scale's own verdicts, reasons and wholes.
+    them. evidence: what stands in place of the scale's own positions and verdicts.
     """
     numbers, _, measured = summary or [None] * 3
     pages = {}
@@ -169,35 +163,27 @@ def _table(
     cells = _numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
-    # A column is judged as a whole by many runs alone.
-    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else None
-    row["wholes"] = [] if columns is None else _wholes(columns, spec, labels)
+    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else pd.DataFrame()
+    row["wholes"] = _wholes(columns, spec, labels) if len(columns) else ""
     return row | {"numbers": cells, "laid": _laid(folder / f"{row['stem']}.csv", spec, cells)}
 
 
-def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> list[str]:
-    """A sentence on each column of printed means as a whole."""
-    sentences = []
-    for (place, metric), rows in columns.groupby(["place", "metric"], sort=False):
-        head = [_heading(metric, "mean", spec, labels)]
-        for key, value in json.loads(place).items():
+def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
+    """Return what differs between columns of printed means and ours: their order, or level."""
+    told = []
+    for row in records(columns[columns["position"].isin(["below", "above"])]):
+        head = [_heading(row["metric"], "mean", spec, labels)]
+        for key, value in json.loads(row["place"]).items():
             if value != spec.primary.get(key):
                 head.append(naming.printed(value, key, labels))
-        whole = records(rows[rows["quantity"].isin(WHOLE)])
-        why = f" It decides nothing: {whole[0]['why']}." if whole[0]["why"] else ""
-        sentences.append(f"{', '.join(head)}: {'; '.join(map(_whole, whole))}.{why}")
-    return sentences
-
-
-def _whole(row: Row) -> str:
-    """Whether a quantity of a column lies where experiments of the paper's size have it."""
-    name, order = row["quantity"], row["quantity"] == "order"
-    if row["in_range"]:
-        return f"{name} fits"
-    word = "reversed" if order and row["printed"] < 0 else "does not fit"
-    low, high = (f"{row[end]:.3g}" for end in ("low95_predicted", "high95_predicted"))
-    what = "rank correlation with ours" if order else "in print"
-    return f"{name} {word} ({what} {row['printed']:.3g}, expected {low} to {high})"
+        low, high = (f"{row[end]:.2g}" for end in ("low95_predicted", "high95_predicted"))
+        if row["quantity"] == "level":
+            what = f"level {row['position']} ours ({row['printed']:.3g}; ours {low} to {high})"
+        else:
+            word = "reversed" if row["printed"] < 0 else "another one"
+            what = f"order {word} (rank correlation {row['printed']:.2g}; ours {low} to {high})"
+        told.append(f"{', '.join(head)}: {what}")
+    return "; ".join(told)
 
 
 def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
@@ -225,8 +211,8 @@ def _numbers(
 ) -> list[Row]:
     """The cells of a table: those with a published number, and what other methods have in the same
     column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
-    runs would print it), apart (relative to the published number), near, own (the verdict on ours;
-    verdict: by which it counts). many: the rows of the evidence, in place of the table's own.
+    runs would print it), apart (relative to the published number), bar (`charts.add_bars`). many:
+    the rows of the evidence, in place of the table's own.
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -249,23 +235,20 @@ def _numbers(
             "row": ", ".join(printed_key(key, position[key], labels) for key in keys),
             "column": _heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
-            "own": None if cell["verdict"] == "identified" else cell["verdict"],
-            "verdict": "identified" if cell["identified"] else cell["verdict"],
-            **nearness(cell),
+            **_distance(cell),
         }
+    charts.add_bars(cells)
     return cells
 
 
-def nearness(cell: Row) -> Row:
-    """Of a number: beside, apart and near (`_numbers`), None for a quantity that the paper does not
-    define.
-    """
+def _distance(cell: Row) -> Row:
+    """Return beside and apart of a number (`_numbers`)."""
     scaled, number = cell["value_ours_scaled"], cell["value_published"]
     beside = cell["value_ours"] if scaled is None else scaled
-    apart = beside / number - 1 if number and beside is not None else None
-    near = apart is not None and abs(apart) <= NEAR + 1e-9
-    near = None if cell.get("why") == comparison.UNDEFINED else near
-    return {"beside": beside, "apart": apart, "near": near}
+    return {
+        "beside": beside,
+        "apart": beside / number - 1 if number and beside is not None else None,
+    }
 
 
 def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:

@@ -1,0 +1,198 @@
+"""What each method gives on each problem: a row per study, family of problems, method and problem.
+
+Columns of `methods.csv`:
+
+- study, experiment, family, problem, method: what is measured; a family is a group of problems that
+  the study declares, and empty for the problems of none
+- proposed: whether it is the method that the paper proposes
+- straight: whether the straight line from start to target is free
+- runs, free: number of runs, and the share whose path the certified checker accepts
+- excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
+  runs: median and its 95 % bootstrap interval, empty for one run
+- round, cornered: free runs whose path has no corner, and those whose path has one
+- curvature: largest curvature of the paths without corners, in 1/unit: median
+- rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
+  that; empty if every free path has a corner
+- rounded_curvature: largest curvature of that path, greater where its turns have no more room
+- cpu_ms, evaluations: CPU time of a run, and the paths that it evaluates: medians of all runs
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.results import Results, path_of
+from bezierplan.geometry.tightest_turn import largest_curvature
+from bezierplan.planners import rounded_shortest_path
+from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
+
+# A shortest path that is longer than the straight line by less, as a share, is that line.
+_STRAIGHT = 1e-9
+
+# Excesses that differ by less are equal, and so are curvatures that differ by a smaller factor: the
+# radii of the rounded path are 2 % apart.
+_EQUAL, _TIGHTER = 1e-6, 1.03
+
+COLUMNS = (
+    *("study", "experiment", "family", "problem", "method", "proposed", "straight", "runs", "free"),
+    *("excess", "excess_low", "excess_high", "round", "cornered", "curvature"),
+    *("rounded", "rounded_curvature", "cpu_ms", "evaluations"),
+)
+
+
+class Family(NamedTuple):
+    """The problems of an experiment that belong together. problems: their names, all if empty.
+    straight: `free` or `blocked` for those whose straight line is, or None for both.
+    """
+
+    experiment: str
+    problems: Sequence[str] = ()
+    straight: str | None = None
+
+    def has(self, experiment: str, problem: str, straight: bool) -> bool:
+        """Return whether a problem is one of the family."""
+        return (
+            self.experiment == experiment
+            and (not self.problems or problem in self.problems)
+            and self.straight in (None, "free" if straight else "blocked")
+        )
+
+
+def measured(experiment: str, results: Results, families: Mapping[str, Family]) -> pd.DataFrame:
+    """Return a row for each problem and method of an experiment: `COLUMNS` but for study and
+    proposed.
+    """
+    runs = results.runs.assign(
+        free=results.runs["feasible"].astype(bool),
+        gap=metrics.values(results.runs, "gap", results.problems),
+        corners=metrics.values(results.runs, "corners", results.problems),
+    )
+    return pd.DataFrame(_rows(experiment, runs, results.problems, families))
+
+
+def _rows(
+    experiment: str,
+    runs: pd.DataFrame,
+    problems: Mapping[str, Problem],
+    families: Mapping[str, Family],
+) -> Iterator[dict[str, Any]]:
+    for name, of_problem in runs.groupby("problem", sort=False):
+        problem, bound = problems[name], of_problem["bound"].iloc[0]
+        straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
+        kin = (each for each, own in families.items() if own.has(experiment, name, straight))
+        place = {"experiment": experiment, "family": next(kin, ""), "problem": name}
+        for method, own in of_problem.groupby("method", sort=False):
+            free = own[own["free"]]
+            smooth = free[free["corners"] == 0]
+            excess = free["gap"].to_numpy()
+            draws = generator(f"methods/{experiment}/{name}/{method}")
+            low, high = statistics.interval("median", excess, draws)
+            yield {
+                **place,
+                "method": method,
+                "straight": straight,
+                "runs": len(own),
+                "free": len(free) / len(own),
+                "excess": np.median(excess) if len(excess) else math.nan,
+                "excess_low": low,
+                "excess_high": high,
+                "round": len(smooth),
+                "cornered": len(free) - len(smooth),
+                **_turns(smooth, problem, bound),
+                "cpu_ms": 1000 * own["cpu_s"].median(),
+                "evaluations": own["evaluations"].median(),
+            }
+
+
+def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, float]:
+    """Return how tightly paths without corners turn, and what a rounded shortest path that may turn
+    so gives; nothing if there are no such paths.
+    """
+    if smooth.empty:
+        return {}
+    paths = map(path_of, smooth.to_dict("records"))
+    curvature = float(np.median([largest_curvature(path) for path in paths]))
+    radius = 1 / curvature if curvature > 0 else math.inf
+    draws = generator("methods/rounded")  # unused: the path is exact
+    plan = rounded_shortest_path.plan(problem, draws, turning_radius=radius, excess=math.inf)
+    return {
+        "curvature": curvature,
+        "rounded": plan.objective / bound - 1,
+        "rounded_curvature": largest_curvature(plan.path),
+    }
+
+
+def of_studies(
+    proposed: Mapping[str, str | None],
+    families: Mapping[str, Mapping[str, Family]],
+    experiments: Mapping[str, Results],
+) -> pd.DataFrame:
+    """Return the rows of all experiments, each `study/experiment`; `COLUMNS`. proposed, families:
+    by study.
+    """
+    tables = []
+    for place, results in experiments.items():
+        study, _, name = place.partition("/")
+        rows = measured(name, results, families[study])
+        tables.append(rows.assign(study=study, proposed=rows["method"] == proposed[study]))
+    rows = pd.concat(tables) if tables else pd.DataFrame()
+    return rows.reindex(columns=COLUMNS)
+
+
+def of_families(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each study, family and method of `methods.csv`, the least often free first,
+    and of equal ones the longest.
+
+    Columns: problems, runs; free, and worst, the share of the worst problem; over the problems the
+    medians of excess, rounded and cpu_ms; round and cornered, free runs; both, the problems with a
+    path without corners, and adds, those of them in which the method is shorter than the rounded
+    path, or turns less tightly than that can.
+    """
+    known = rows[rows["family"].notna() & rows["family"].ne("")]
+    both = known["rounded"].notna()
+    shorter = known["excess"] < known["rounded"] - _EQUAL
+    smoother = known["curvature"] * _TIGHTER < known["rounded_curvature"]
+    known = known.assign(
+        frees=known["free"] * known["runs"], both=both, adds=both & (shorter | smoother)
+    )
+    groups = known.groupby(["study", "family", "method", "proposed"], sort=False)
+    sums = groups[["runs", "frees", "round", "cornered", "both", "adds"]].sum()
+    table = groups[["excess", "rounded", "cpu_ms"]].median().join(sums)
+    table = table.assign(
+        problems=groups.size(), worst=groups["free"].min(), free=table["frees"] / table["runs"]
+    )
+    worst_first = table.sort_values(["free", "excess"], ascending=[True, False])
+    return worst_first.drop(columns="frees").reset_index()
+
+
+def laid_out(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the papers' methods of `of_families` as words, the index their study and method."""
+    own = rows[rows["proposed"].astype(bool)].copy()
+    own.index = pd.Index(own["study"] + ", " + own["method"], name="method")
+    corners = [
+        f" ({row.cornered:.0f} of {row.round + row.cornered:.0f} have corners)"
+        if row.cornered
+        else ""
+        for row in own.itertuples()
+    ]
+    return pd.DataFrame(
+        {
+            "scenarios": own["family"],
+            "free paths": _shares(own["free"]) + ", worst " + _shares(own["worst"]),
+            "longer than the shortest": _shares(own["excess"]),
+            "rounded shortest path, turning as gently": _shares(own["rounded"]) + corners,
+            "shorter or smoother than that": [
+                f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–" for row in own.itertuples()
+            ],
+            "time": own["cpu_ms"].map("{:.2g} ms".format),
+        }
+    )
+
+
+def _shares(values: pd.Series) -> pd.Series:
+    return values.map(lambda value: "–" if math.isnan(value) else f"{value:.1%}".replace("%", " %"))
