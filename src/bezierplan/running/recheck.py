@@ -210,9 +210,11 @@ def _identity_faults(
         return
     for row, known in zip(entries, planned):
         for name, value in known.items():
-            # What a run finds out takes the place of a setting of that name.
-            if name not in Outcome._fields and row.get(name) != value:
-                yield _differs(file, known["id"], name, row.get(name), value)
+            # What a run finds out takes the place of a setting of that name. NaN differs from itself.
+            again = row.get(name)
+            equal = again == value or (value != value and again != again)
+            if name not in Outcome._fields and not equal:
+                yield _differs(file, known["id"], name, again, value)
 
 
 def _row_faults(
