@@ -210,7 +210,7 @@ def _identity_faults(
         return
     for row, known in zip(entries, planned):
         for name, value in known.items():
-            # What a run finds out takes the place of a setting of that name. NaN differs from itself.
+            # What a run finds out takes the place of a setting of that name. No NaN equals itself.
             again = row.get(name)
             equal = again == value or (value != value and again != again)
             if name not in Outcome._fields and not equal:
