@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numbers_picture
 import pandas as pd
 
 from bezierplan.analysis import naming
@@ -34,6 +35,7 @@ CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site and the report take positions and verdicts from it alone."""
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
+PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
     "The papers' methods, worst first: medians over the problems. The exact shortest path with "
     "rounded corners is asked to turn no tighter than the method's median path without corners; "
@@ -110,6 +112,7 @@ def write(
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
     checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
     settings.to_csv(KEPT / "settings.csv", index=False)
+    numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
     follow = following(KEPT, verdicts, numbers, claims, measured)
     for key, text in follow.items():
         page = paper(titles[key], text, claims[claims["study"] == key], RESULTS / key, tables[key])
@@ -219,7 +222,7 @@ def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
 
     addresses: of the studies' pages, by name.
     """
-    parts = [f"**{' '.join(head.sentences)}**"]
+    parts = [f"**{' '.join(head.sentences)}**", PICTURE]
     if not head.papers.empty:
         shown = head.papers.rename(
             columns=headline.PAPERS,

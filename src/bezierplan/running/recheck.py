@@ -212,9 +212,11 @@ def _find_identity_faults(
         return
     for row, known in zip(entries, planned):
         for name, value in known.items():
-            # What a run finds out takes the place of a setting of that name.
-            if name not in Outcome._fields and row.get(name) != value:
-                yield _describe_difference(file, known["id"], name, row.get(name), value)
+            # What a run finds out takes the place of a setting of that name. No NaN equals itself.
+            again = row.get(name)
+            equal = again == value or (value != value and again != again)
+            if name not in Outcome._fields and not equal:
+                yield _describe_difference(file, known["id"], name, again, value)
 
 
 def _find_row_faults(
