@@ -4,6 +4,7 @@ spacing, and the traps of grid lines.
 
 import numpy as np
 import pytest
+import shapely
 
 from bezierplan.geometry import cell_length, curves
 from bezierplan.workspaces.grid import Grid
@@ -92,8 +93,10 @@ def test_samples_of_curves_lie_on_them_and_less_than_a_cell_apart(degree):
         path = Path("bezier", rng.uniform(0, 100, (degree + 1, 2)))
         x, y = cell_length.samples(path, field(100))
         assert np.hypot(np.diff(x), np.diff(y)).max() < 1
-        expected = curves.sample_matrix("bezier", degree + 1, len(x)) @ path.points + 0.5
-        np.testing.assert_allclose(np.column_stack([x, y]), expected, rtol=0, atol=1e-10)
+        # Pieces of a high degree are cut, and then samples are uniform in each part alone.
+        curve = curves.sample_matrix("bezier", degree + 1, 20_001) @ path.points + 0.5
+        away = shapely.distance(shapely.points(x, y), shapely.linestrings(curve))
+        assert away.max() < 1e-4
 
 
 def test_monotone_curves_between_corners_measure_between_one_and_a_half_and_two_sides():
