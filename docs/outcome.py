@@ -105,7 +105,7 @@ def write(
     claims = with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     for name in ("numbers.csv", WORTH, WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
-    # Of the papers' numbers of runs: to measure the turns of all paths takes longer than to find them.
+    # Of the papers' numbers of runs: to measure all turns takes longer than to find the paths.
     for name in (BASELINE_COMPARISON, METHODS):
         shutil.copyfile(FULL / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
