@@ -189,7 +189,7 @@ def laid_out(rows: pd.DataFrame) -> pd.DataFrame:
             "shorter or smoother than that": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–" for row in own.itertuples()
             ],
-            "time": own["cpu_ms"].map("{:.2g} ms".format),
+            "time": own["cpu_ms"].map("{:.3g} ms".format),
         }
     )
 
