@@ -61,7 +61,7 @@ workspaces = ("circles",)
 
 def plan(problem, rng, *, up: float):
     """Plan one bend."""
-    shift = {READS.format("data/shift.txt")} + {READS.format("../shared.txt")}
+    shift = {READS.format("data/shift.txt")} + {READS.format("../beside.txt")}
     middle = [shift, up + HEIGHT + rng.normal(0, 0.1)]
     path = Curve("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
@@ -69,7 +69,7 @@ def plan(problem, rng, *, up: float):
 ''',
     "place.py": "HEIGHT = 1.0\n",
     "data/shift.txt": "0.1",
-    "../shared.txt": "0.2",
+    "../beside.txt": "0.2",
     "metrics.py": f"""
 from pathlib import Path
 from bezierplan.analysis.metric import metric
@@ -249,8 +249,8 @@ EDITS = [
     ("reads/place.py", COMMENT, False),
     ("reads/place.py", put("1.0", "1.1"), True),
     ("reads/data/shift.txt", append("1"), True),
-    ("shared.txt", append("1"), True),
-    ("shared.txt", os.utime, False),
+    ("beside.txt", append("1"), True),
+    ("beside.txt", os.utime, False),
     ("reads/weight.txt", append("1"), True),
     ("reads/term.txt", append("1"), True),
     ("reads/radius.txt", append(".5"), True),

@@ -53,26 +53,28 @@ def main(
     places = stored.places_of(folder, config_of(), map(study_named, studies))
     config = proof.narrowed(config_of(), [*places.values()])
     at = stored.places(reading.load(reading.read_config(config)))
-    listed = proof.listed(folder)
-    made = stored.jobs_of(at, folder, listed.digests)
-    changes = {file: _changed(made.get(file), listed.accounts[file]) for file in listed.accounts}
-    tasks = _tasks(at, made, changes, folder)
+    contents = proof.listed(folder)
+    makers = stored.jobs_of(at, folder, contents.digests)
+    changes = {
+        file: _changed(makers.get(file), contents.accounts[file]) for file in contents.accounts
+    }
+    tasks = _tasks(at, makers, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
-    faults = [*proof.unlisted(folder, listed), *verdict.faults]
+    faults = [*proof.unlisted(folder, contents), *verdict.faults]
     again = recheck.made_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
-    follow = {name: not isinstance(made[name], _KEPT) for name in made}
-    files, others = proof.differing(folder, follow, config, listed.digests, cores)
+    follow = {name: not isinstance(makers[name], _KEPT) for name in makers}
+    files, others = proof.differing(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         wrong.setdefault(fault.file, fault)
-    left, versions = stored.strangers(folder, made), recheck.versions()
+    left, versions = stored.strangers(folder, makers), recheck.versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
     names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
     moved = [
         f"{name} {before} -> {versions.get(name)}"
-        for name, before in listed.versions.items()
+        for name, before in contents.versions.items()
         if names and versions.get(name) != before
     ]
     words = ", ".join([*sorted(names - versions.keys()), *moved])
@@ -99,13 +101,13 @@ def _changed(job: Job | None, account: Mapping[str, str]) -> set[str]:
 
 
 def _tasks(
-    at: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
+    at: Studies, makers: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
 ) -> list[recheck.StoredRuns]:
     """Return the runs of each method in an experiment of which there are some. at: the study at
     each place of results.
     """
-    found: dict[Path, recheck.StoredRuns] = {}
-    for name, job in made.items():
+    tasks: dict[Path, recheck.StoredRuns] = {}
+    for name, job in makers.items():
         file = folder / name
         if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
             place, experiment = name.partition("/runs/")[0], job.chunk.experiment
@@ -116,5 +118,5 @@ def _tasks(
                 {},
                 changed if "settings" in changes.get(name, ()) else "",
             )
-            found.setdefault(file.parent, task).runs[str(file)] = job.chunk
-    return [*found.values()]
+            tasks.setdefault(file.parent, task).runs[str(file)] = job.chunk
+    return [*tasks.values()]

@@ -199,14 +199,14 @@ def plain_answers(
 ) -> Iterator[Reply | PlannerFailure]:
     """Yield `replies` with plain values; of a run that fails, what is wrong with it."""
     for reply in replies(work, tasks, again, begin, goes_on=True):
-        task, found = tasks[reply.number], reply.result
+        task, plan = tasks[reply.number], reply.result
         try:
-            if isinstance(found, PlannerFailure):
-                raise found
+            if isinstance(plan, PlannerFailure):
+                raise plan
             with answer.of(task.name):
                 if work.function == "plan" and not work.worlds:
-                    found = answer.plain(found)
-            yield reply._replace(result=plain.packed(found))
+                    plan = answer.plain(plan)
+            yield reply._replace(result=plain.packed(plan))
         except PlannerFailure as failure:
             yield failure
 
