@@ -3,7 +3,7 @@ scales.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
-`make outcome` writes it; the site and the report read it.
+`make outcome` writes it; the site reads it.
 """
 
 import re
@@ -33,7 +33,7 @@ WORTH, WHOLES = "worth.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 CHECKS = "claim_checks.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
-"""What many runs say: the site and the report take positions and verdicts from it alone."""
+"""What many runs say: the site takes positions and verdicts from it alone."""
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (

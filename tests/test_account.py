@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import starts
+from chunks import CLAIMS
 
 from bezierplan.places import TREE
 
@@ -40,12 +41,7 @@ figures:
     {kind: own, experiment: bends, function: dots, metrics: [length]}]}
   figure2: {title: The room, columns: 1, panels: [{kind: workspace, workspace: room}]}
 """,
-    "claims.yaml": """
-claims:
-  - {id: C1, place: Table 1, statement: The line is shorter., artefact: table1, checks: [
-      {test: lower, experiment: bends, metric: length, groups: [line], than: [bend],
-       direction: lower, margin: 0.01}]}
-""",
+    "claims.yaml": CLAIMS,
     "published/lengths.csv": "method,metric,statistic,n,unit,value\nbend,weighed,mean,2,m,10.0\n",
     "room.txt": "..#\n...\n",
     "bend.py": f'''"""A bend of one control point."""
