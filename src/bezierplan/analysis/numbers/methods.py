@@ -10,7 +10,8 @@ Columns of `methods.csv`:
 - excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
   runs: median and its 95 % bootstrap interval, empty for one run
 - round, cornered: free runs whose path has no corner, and those whose path has one
-- curvature: largest curvature of the paths without corners, in 1/unit: median
+- curvature: largest curvature of the paths without corners, in 1/unit: median; empty, as the
+  columns after it, for a problem of no family
 - rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
   that; empty if every free path has a corner
 - rounded_curvature: largest curvature of that path, greater where its turns have no more room
@@ -84,12 +85,9 @@ def _rows(
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
-        kin = (
-            each
-            for each, of_method in families.items()
-            if of_method.has(experiment, name, straight)
-        )
-        names = {"experiment": experiment, "family": next(kin, ""), "problem": name}
+        kin = (key for key, kind in families.items() if kind.has(experiment, name, straight))
+        family = next(kin, "")
+        names = {"experiment": experiment, "family": family, "problem": name}
         for method, of_method in of_problem.groupby("method", sort=False):
             free = of_method[of_method["free"]]
             smooth = free[free["corners"] == 0]
@@ -107,7 +105,7 @@ def _rows(
                 "excess_high": high,
                 "round": len(smooth),
                 "cornered": len(free) - len(smooth),
-                **_turns(smooth, problem, bound),
+                **(_turns(smooth, problem, bound) if family else {}),
                 "cpu_ms": 1000 * of_method["cpu_s"].median(),
                 "evaluations": of_method["evaluations"].median(),
             }
@@ -119,7 +117,8 @@ def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, fl
     """
     if smooth.empty:
         return {}
-    paths = map(path_of, smooth.to_dict("records"))
+    # The columns alone that a path needs: rows of all columns take longer than the curvature.
+    paths = map(path_of, smooth[["path_curve", "path_points"]].to_dict("records"))
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
