@@ -1,4 +1,4 @@
-"""What the site and the report show: tables and figures of a scale, which mirror the papers', and
+"""What the site shows: tables and figures of a scale, which mirror the papers', and
 as evidence the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
 """
 

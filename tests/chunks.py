@@ -38,3 +38,11 @@ BENDS = CHUNK._replace(
     planner="bend",
     problems={"disc": {"workspace": "field"}},
 )
+
+# A claim of the small studies whose experiment is `bends`.
+CLAIMS = """
+claims:
+  - {id: C1, place: Table 1, statement: The line is shorter., artefact: table1, checks: [
+      {test: lower, experiment: bends, metric: length, groups: [line], than: [bend],
+       direction: lower, margin: 0.01}]}
+"""

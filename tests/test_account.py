@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import starts
+from chunks import CLAIMS
 
 from bezierplan.places import TREE
 
@@ -40,12 +41,7 @@ figures:
     {kind: own, experiment: bends, function: dots, metrics: [length]}]}
   figure2: {title: The room, columns: 1, panels: [{kind: workspace, workspace: room}]}
 """,
-    "claims.yaml": """
-claims:
-  - {id: C1, place: Table 1, statement: The line is shorter., artefact: table1, checks: [
-      {test: lower, experiment: bends, metric: length, groups: [line], than: [bend],
-       direction: lower, margin: 0.01}]}
-""",
+    "claims.yaml": CLAIMS,
     "published/lengths.csv": "method,metric,statistic,n,unit,value\nbend,weighed,mean,2,m,10.0\n",
     "room.txt": "..#\n...\n",
     "bend.py": f'''"""A bend of one control point."""
@@ -61,7 +57,7 @@ workspaces = ("circles",)
 
 def plan(problem, rng, *, up: float):
     """Plan one bend."""
-    shift = {READS.format("data/shift.txt")} + {READS.format("../shared.txt")}
+    shift = {READS.format("data/shift.txt")} + {READS.format("../beside.txt")}
     middle = [shift, up + HEIGHT + rng.normal(0, 0.1)]
     path = Curve("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
@@ -69,7 +65,7 @@ def plan(problem, rng, *, up: float):
 ''',
     "place.py": "HEIGHT = 1.0\n",
     "data/shift.txt": "0.1",
-    "../shared.txt": "0.2",
+    "../beside.txt": "0.2",
     "metrics.py": f"""
 from pathlib import Path
 from bezierplan.analysis.metric import metric
@@ -249,8 +245,8 @@ EDITS = [
     ("reads/place.py", COMMENT, False),
     ("reads/place.py", put("1.0", "1.1"), True),
     ("reads/data/shift.txt", append("1"), True),
-    ("shared.txt", append("1"), True),
-    ("shared.txt", os.utime, False),
+    ("beside.txt", append("1"), True),
+    ("beside.txt", os.utime, False),
     ("reads/weight.txt", append("1"), True),
     ("reads/term.txt", append("1"), True),
     ("reads/radius.txt", append(".5"), True),

@@ -14,7 +14,6 @@ from urllib.parse import unquote, urldefrag
 
 import pandas as pd
 import pytest
-import report
 from bs4 import BeautifulSoup
 from content import OUTCOME
 from playwright.sync_api import expect
@@ -259,12 +258,6 @@ SEARCHES = {
 
 
 @needs_browser
-def test_the_report_has_a_page_a_paper_and_at_most_fourteen(tmp_path):
-    report.main(str(tmp_path / "report.pdf"))
-    pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
-    assert 8 <= len(pages) <= 14
-
-
 @needs_browser
 def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
     for question, clicks, answer in CLICKS:

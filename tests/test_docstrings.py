@@ -21,7 +21,6 @@ TUPLES = [
         checker.Check,
         graph.Bound,
         metrics.Metric,
-        statistics.Prediction,
     ),
     *(region.GridRegion, region.CircleRegion, region.PolygonRegion),
 ]

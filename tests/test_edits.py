@@ -23,7 +23,7 @@ def artefacts(own):
             "tharwat2018",
             "cpso1_gauss",
             [*(f"figure{n}" for n in (2, 3, 4, 5, 9, 10, 11, 12, 14, 15)), "table4", "table5"],
-            ("figure8_profiles", "table3_variants"),
+            ("feasibility",),
         ),
     ],
 )

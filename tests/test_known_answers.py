@@ -161,7 +161,7 @@ def test_a_sentence_about_extremes_holds_in_19_of_20_draws(share, expected):
 def test_ten_times_the_paper_s_runs_tell_a_chance(runs, known):
     values = np.stack([sample("a", n=runs), sample("b", n=runs)], axis=1)
     terms, printed = effects.Terms("a", "lower than", "b"), np.full(2, np.nan)
-    compared = effects.Comparison(
+    compared = effects.Contrast(
         terms, (), ("a", "b"), {"": values}, printed, 10, boolean=False, paired=False
     )
     check = checks_of_claims.check_of(LOWER | {"statistic": "min"})

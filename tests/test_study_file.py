@@ -55,7 +55,7 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     first, second = (
         execution.resolve_settings(job, Condition(problem, {})) for problem in ("0_15", "0_255")
     )
-    assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 601)
+    assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 501)
     assert second == first | {"genes": 5, "generations": 9}  # the method has samples of its own
     assert execution.resolve_settings(job, Condition("0_255", {"genes": 4}))["genes"] == 4
     assert (
@@ -108,7 +108,7 @@ def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(
     file.write_text(text)
     study = reading.load([folder])["song2016"]
     resolved = study.resolved("smooth")
-    assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 601, 6)
+    assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 501, 6)
     assert study.resolved("shortest_path") == {}
 
 

@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 import starts
-from chunks import CHUNK, MADE
+from chunks import CHUNK, CLAIMS, MADE
 
 from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import proof
@@ -63,12 +63,7 @@ figures:
   figure1: {title: Lengths, columns: 1, panels: [
     {kind: boxes, experiment: bends, metric: length}]}
 """,
-    "claims.yaml": """
-claims:
-  - {id: C1, place: Table 1, statement: The line is shorter., artefact: table1, checks: [
-      {test: lower, experiment: bends, metric: length, groups: [line], than: [bend],
-       direction: lower, margin: 0.01}]}
-""",
+    "claims.yaml": CLAIMS,
     "published/lengths.csv": "method,metric,statistic,n,unit,value\nbend,length,mean,6,m,10.0\n",
 }
 RUNS = "bend/runs/bends/bend/0.parquet"

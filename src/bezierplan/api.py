@@ -598,7 +598,7 @@ def _answer(
         run = planning.Run(which, home, legs, planning.find_shortest(legs), settings, int(seed))
         again = 1 if getattr(module, "deterministic", False) else int(repeats)
         runs += [run._replace(seed=run.seed + number) for number in range(again)]
-    found: list[Answer] = []
+    answered: list[Answer] = []
     try:
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
             judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
@@ -607,12 +607,14 @@ def _answer(
                     f"its path is {judged['length']:.12g} long and feasible, but no free path is "
                     f"shorter than {run.bound.length:.12g}: the checker or the bound is wrong"
                 )
-            found.append(Answer(**judged, method=label, settings=settings, via=places, cpu_s=cpu_s))
+            answered.append(
+                Answer(**judged, method=label, settings=settings, via=places, cpu_s=cpu_s)
+            )
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
-        raise ValueError(f"{runs[len(found)].label}: {fault}") from None
-    return found
+        raise ValueError(f"{runs[len(answered)].label}: {fault}") from None
+    return answered
 
 
 def plan_all(
@@ -867,11 +869,11 @@ def answer_of(rerun: Any, run: str) -> Answer:
     return Answer(**answers.of_run(rerun, run))
 
 
-def _draw_html(shown: Problem | Workspace) -> str:
+def _draw_html(home: Problem | Workspace) -> str:
     """Return the picture of a map or a problem, for notebooks."""
-    return drawn_path.html("", partial(drawn_path.draw, shown))
+    return drawn_path.html("", partial(drawn_path.draw, home))
 
 
 # Maps and problems lie in a layer below that of figures.
-for shown in (Problem, *get_args(Workspace)):
-    shown.plot, shown._repr_html_ = drawn_path.draw, _draw_html
+for kind in (Problem, *get_args(Workspace)):
+    kind.plot, kind._repr_html_ = drawn_path.draw, _draw_html

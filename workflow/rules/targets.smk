@@ -37,23 +37,6 @@ rule readings:
         of_studies("extended", "claims_by_reading.csv", lambda study: study.readings),
 
 
-# The report on the papers, for print: a page each, by the browser that the tests use.
-rule report_pdf:
-    input:
-        "results/full/index.html",
-    output:
-        "results/full/report.pdf",
-    log:
-        "results/full/report.log",
-    conda:
-        "../envs/bezierplan.yaml"
-    params:
-        python=sys.executable,
-        script=str(Path(SOURCE).with_name("docs") / "report.py"),
-    shell:
-        "{params.python} {params.script:q} {output:q} 2> {log:q} || (cat {log:q} >&2; false)"
-
-
 for study in STUDIES:
 
     rule:

@@ -341,18 +341,18 @@ class BaselineTable(Job):
         from bezierplan.running import inputs
 
         files = inputs.group_by_experiment(self.shows, input_files)
-        found = {
+        by_place = {
             place: results.read(files[place], number, place.partition("/")[2])
             for place, number in self.repeats.items()
         }
-        tables = [baseline_comparison.of_studies(self.baselines, found, self.with_baselines)]
+        tables = [baseline_comparison.of_studies(self.baselines, by_place, self.with_baselines)]
         if not self.with_baselines:
             proposed = {study: method for study, (_, method) in self.baselines.items()}
             families = {
                 study: {name: methods.Family(**each) for name, each in own.items()}
                 for study, own in self.families.items()
             }
-            tables.append(methods.of_studies(proposed, families, found))
+            tables.append(methods.of_studies(proposed, families, by_place))
         for table, file in zip(tables, output_files, strict=True):
             table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
 

@@ -75,11 +75,11 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     """Return the paths of a csv file, judged. Raises ValueError for one that does not join the ends
     of its problem.
     """
-    found = []
+    answers_read = []
     for name, path, evaluations in benchmark.read_paths(file, problems):
         problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
         check_ends(path, problem)
         judged = answers.verdict(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
-        found.append(api.Answer(**judged, **answers.of_planner(plan), method=str(file)))
-    return found
+        answers_read.append(api.Answer(**judged, **answers.of_planner(plan), method=str(file)))
+    return answers_read

@@ -53,28 +53,28 @@ def main(
     places = stored.read_places(folder, read_config(), map(find_study_path, studies))
     config = proof.narrowed(read_config(), [*places.values()])
     at = stored.list_places(reading.load(reading.read_config(config)))
-    listed = proof.listed(folder)
-    made = stored.find_jobs(at, folder, listed.digests)
+    contents = proof.listed(folder)
+    makers = stored.find_jobs(at, folder, contents.digests)
     changes = {
-        file: _find_changes(made.get(file), listed.accounts[file]) for file in listed.accounts
+        file: _find_changes(makers.get(file), contents.accounts[file]) for file in contents.accounts
     }
-    tasks = _list_tasks(at, made, changes, folder)
+    tasks = _list_tasks(at, makers, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
-    faults = [*proof.unlisted(folder, listed), *verdict.faults]
+    faults = [*proof.unlisted(folder, contents), *verdict.faults]
     again = recheck.run_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
-    follow = {name: not isinstance(made[name], _KEPT) for name in made}
-    files, others = proof.differing(folder, follow, config, listed.digests, cores)
+    follow = {name: not isinstance(makers[name], _KEPT) for name in makers}
+    files, others = proof.differing(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         wrong.setdefault(fault.file, fault)
-    left, versions = stored.find_strangers(folder, made), recheck.read_versions()
+    left, versions = stored.find_strangers(folder, makers), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
     names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
     moved = [
         f"{name} {before} -> {versions.get(name)}"
-        for name, before in listed.versions.items()
+        for name, before in contents.versions.items()
         if names and versions.get(name) != before
     ]
     words = ", ".join([*sorted(names - versions.keys()), *moved])
@@ -101,13 +101,13 @@ def _find_changes(job: Job | None, account: Mapping[str, str]) -> set[str]:
 
 
 def _list_tasks(
-    at: Studies, made: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
+    at: Studies, makers: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
 ) -> list[recheck.StoredRuns]:
     """Return the runs of each method in an experiment of which there are some. at: the study at
     each place of results.
     """
-    found: dict[Path, recheck.StoredRuns] = {}
-    for name, job in made.items():
+    tasks: dict[Path, recheck.StoredRuns] = {}
+    for name, job in makers.items():
         file = folder / name
         if isinstance(job, Runs) and file.stem.isdecimal() and file.parent.is_dir():
             place, experiment = name.partition("/runs/")[0], job.chunk.experiment
@@ -118,5 +118,5 @@ def _list_tasks(
                 {},
                 changed if "settings" in changes.get(name, ()) else "",
             )
-            found.setdefault(file.parent, task).runs[str(file)] = job.chunk
-    return [*found.values()]
+            tasks.setdefault(file.parent, task).runs[str(file)] = job.chunk
+    return [*tasks.values()]

@@ -27,7 +27,7 @@ _NOTEBOOK = {"dpi": 140, "format": "webp"}
 
 
 def draw(
-    shown: Problem | Workspace,
+    home: Problem | Workspace,
     axes: Axes | None = None,
     path: Path | None = None,
     shortest: np.ndarray | None = None,
@@ -49,8 +49,8 @@ def draw(
         axes = plt.figure(layout="constrained").add_subplot()
     parts: dict[str, Any] = {"path": paths.steps(path) if path else np.empty((0, 2))}
     if map:
-        workspace.draw_home(axes, getattr(shown, "workspace", shown))
-        ends = {name: [getattr(shown, name)] for name in workspace.ENDS if hasattr(shown, name)}
+        workspace.draw_home(axes, getattr(home, "workspace", home))
+        ends = {name: [getattr(home, name)] for name in workspace.ENDS if hasattr(home, name)}
         parts |= ends if shortest is None else ends | {"bound": shortest}
     if collision:
         parts["collision"] = [collision]

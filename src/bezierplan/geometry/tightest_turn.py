@@ -8,7 +8,7 @@ from bezierplan.workspaces.problem import Path
 # Samples of a piece in which its largest curvature is sought: these for one piece, at least those
 # for one of many; and how often they close in on it.
 _MOST_SAMPLES, _LEAST_SAMPLES = 400, 16
-_ZOOMS = 4
+_ZOOMS = 3
 
 
 def largest_curvature(path: Path) -> float:
@@ -18,10 +18,10 @@ def largest_curvature(path: Path) -> float:
     counts as 0 where the curve stands still (`STANDSTILL`).
     """
     pieces = bezier_pieces(path)
-    count = max(_LEAST_SAMPLES, _MOST_SAMPLES // len(pieces))
+    first = max(_LEAST_SAMPLES, _MOST_SAMPLES // len(pieces))
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     rows, largest = np.arange(len(pieces)), 0.0
-    for _ in range(_ZOOMS):
+    for count in (first, *[_LEAST_SAMPLES] * _ZOOMS):
         t = np.linspace(low, high, count, axis=1)
         kappa = np.nan_to_num(np.abs(curvatures(pieces.repeat(count, axis=0), t.ravel())[0]))
         tightest = kappa.reshape(t.shape).argmax(axis=1)

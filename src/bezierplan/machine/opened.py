@@ -16,7 +16,7 @@ from typing import Any
 
 from bezierplan.machine.digest import compute_content_digest, keep_json
 from bezierplan.machine.modules import USERS
-from bezierplan.places import PACKAGE, find_cache_folder, shorten_path
+from bezierplan.places import PACKAGE, find_cache_folder, find_user_cache_folder, shorten_path
 
 OPENS = "opens "
 RECORDS = Path(".snakemake") / "opened"
@@ -26,7 +26,10 @@ SEEN: set[str] = set()
 # What belongs to the system, to libraries, to this package or to a user's caches.
 _ELSEWHERE = (
     *("/proc/", "/sys/", "/dev/", "/etc/", "/usr/", f"{Path.home()}/."),
-    *map(os.path.realpath, (sys.prefix, sys.base_prefix, PACKAGE, find_cache_folder())),
+    *map(
+        os.path.realpath,
+        (sys.prefix, sys.base_prefix, PACKAGE, find_cache_folder(), find_user_cache_folder()),
+    ),
 )
 
 
@@ -50,9 +53,9 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
         SEEN.add(file)
 
 
-def keep(job: str, known: Iterable[str | Path]) -> None:
+def keep(job: str, sources: Iterable[str | Path]) -> None:
     """Keep the files that this process has noted but for some, for the job of a key."""
-    before, files = read_kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, known)})
+    before, files = read_kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, sources)})
     if new := {f"{OPENS}{shorten_path(Path(file))}" for file in files} - before.keys():
         keep_json(before | hash_contents(sorted(new)), RECORDS / f"{job}.json")
 

@@ -230,13 +230,13 @@ def _extend(rng, walker, walk, count, goal):
         random = walker.random_step > 0 and rng.random() < walker.random_step
         best, chosen, seen = np.inf, -1, 0
         for k in range(8):
-            other = cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]
-            if walls[other] or visits[other] == visits[0]:
+            neighbour = cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]
+            if walls[neighbour] or visits[neighbour] == visits[0]:
                 continue
             seen += 1
             away = (row - _ROW_STEPS[k]) ** 2 + (column - _COLUMN_STEPS[k]) ** 2
             if (draw_integer(rng, 0, seen) == 0) if random else (away < best):
-                best, chosen = away, other
+                best, chosen = away, neighbour
         if chosen < 0:
             count -= 1
             continue

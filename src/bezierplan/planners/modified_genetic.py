@@ -242,17 +242,21 @@ def resume(
 
 @compile_kernel
 def search(
-    rng: np.random.Generator, field: Field, rules: Settings, known: np.ndarray, scratch: Scratch
+    rng: np.random.Generator,
+    field: Field,
+    rules: Settings,
+    start_genes: np.ndarray,
+    scratch: Scratch,
 ) -> Outcome:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
-    known: the genes that are 1 in a chromosome with which the first population begins; if there are
-    none, all are random. scratch: `prepare_scratch` the field.
+    start_genes: the genes that are 1 in a chromosome with which the first population begins; if
+    there are none, all are random. scratch: `prepare_scratch` the field.
     """
-    watched = rules.diversity == Diversity.more_offspring
+    loops_on = rules.diversity == Diversity.more_offspring
     size = rules.population
     children = 4 * (size // 2)
-    places = size + (1 + rules.most_batches * watched) * children
+    places = size + (1 + rules.most_batches * loops_on) * children
     pool, kinds = (
         gene_lists.prepare_pool(places, _ROOM),
         gene_lists.prepare_kinds(places, len(field.points)),
@@ -263,7 +267,7 @@ def search(
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
     loops = endless = batches = births = losses = 0
 
-    most, evaluations = _fill_population(rng, known, child, pool, field, rules, scratch)
+    most, evaluations = _fill_population(rng, start_genes, child, pool, field, rules, scratch)
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
         for row in range(size):
@@ -281,7 +285,7 @@ def search(
         # much; unless equal chromosomes are told by their costs.
         limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
         fill, extra_batches, alike = size, -1, True
-        while alike and extra_batches < rules.most_batches * watched:
+        while alike and extra_batches < rules.most_batches * loops_on:
             before = fill
             fill, tries, invalid = _add_offspring(
                 rng, pool, before, wheel, eta, limit, child, memory, most, field, rules, scratch
@@ -290,7 +294,7 @@ def search(
             births += children
             losses += invalid
             extra_batches += 1
-            if watched:
+            if loops_on:
                 count = gene_lists.count_kinds(pool, before, fill, count, kinds)
                 q[iteration] = gene_lists.compute_mean_q(kinds, count, fill)
                 alike = q[iteration] > eta
@@ -315,31 +319,31 @@ def search(
 
 
 @allocation_free
-def _fill_population(rng, known, child, pool, field, rules, scratch):
+def _fill_population(rng, start_genes, child, pool, field, rules, scratch):
     """Draw the first population: a place gets the first valid chromosome, or, after `_BARREN` draws
     with as many control points as there may be, one that never counts if another place is filled.
 
     Returns the most control points that a random chromosome has from now on, and the number of
     chromosomes validated.
     """
-    most, evaluations, found = rules.first_points, 0, False
-    for place in range(rules.population):
+    most, evaluations, has_valid = rules.first_points, 0, False
+    for row in range(rules.population):
         barren, cost = 0, np.inf
         while cost == np.inf and evaluations < rules.first_draws:
-            if place == 0 and evaluations == 0 and len(known) > 0:
-                copy(known, child)
-                count = len(known)
+            if row == 0 and evaluations == 0 and len(start_genes) > 0:
+                copy(start_genes, child)
+                count = len(start_genes)
             else:
                 count = _draw_chromosome(rng, child, field.choices, most)
             cost = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
             barren += 1
             if barren % _BARREN == 0 and cost == np.inf:
-                if found:
+                if has_valid:
                     break
                 most = min(2 * most, rules.most_points)
-        found = found or cost < np.inf
-        gene_lists.put(child, count, min(cost, _UNFIT), pool, place)
+        has_valid = has_valid or cost < np.inf
+        gene_lists.put(child, count, min(cost, _UNFIT), pool, row)
     return most, evaluations
 
 

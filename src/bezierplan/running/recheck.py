@@ -62,13 +62,13 @@ def describe_error(file: str, error: Exception) -> Difference:
 
 
 class StoredRuns(NamedTuple):
-    """Files of runs of an experiment, each with the chunk that it is to hold. changed: the file
-    that defines the experiment, if it defines another one than when the runs were made.
+    """Files of runs of an experiment, each with the chunk that it is to hold. other_settings: the
+    file that defines the experiment, if it defines another one than when the runs were made.
     """
 
     problems: str
     runs: dict[str, Chunk]
-    changed: str = ""
+    other_settings: str = ""
 
 
 class RunsVerdict(NamedTuple):
@@ -176,9 +176,9 @@ def judge(task: StoredRuns) -> RunsVerdict:
         else:
             files[file] = table.to_pylist()
             of_file = [*_find_identity_faults(file, files[file], chunk)]
-            if of_file and task.changed:
+            if of_file and task.other_settings:
                 what = f"experiment {chunk.experiment} is another one than that of these runs"
-                of_file = [Difference(task.changed, f"{what}: {File(file).parents[1]}")]
+                of_file = [Difference(task.other_settings, f"{what}: {File(file).parents[1]}")]
             elif not of_file and not {row["problem"] for row in files[file]} <= by_name.keys():
                 of_file = [Difference(task.problems, "not of the problems that the runs are of")]
             if of_file:
@@ -307,7 +307,7 @@ def run_again(
         (task.problems, file, chunk)
         for task in tasks
         for file, chunk in task.runs.items()
-        if not {task.problems, task.changed, file} & {*wrong}
+        if not {task.problems, task.other_settings, file} & {*wrong}
     ]
     return merge_verdicts(_map(again, files, processes))
 

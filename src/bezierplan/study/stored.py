@@ -27,27 +27,29 @@ READINGS, ALTERNATIVES = "readings", "alternatives"
 
 def list_places(studies: Studies) -> Studies:
     """Return studies, also under other values of their assumptions, by the place of results."""
-    found = dict(studies)
+    by_place = dict(studies)
     for key, study in studies.items():
         for folder, under in (
             (READINGS, alternatives.build_joint_readings(study)),
             (ALTERNATIVES, alternatives.build_single_alternatives(study)),
         ):
-            found |= {f"{key}/{folder}/{name}": own for name, own in under.items()}
-    return found
+            by_place |= {f"{key}/{folder}/{name}": own for name, own in under.items()}
+    return by_place
 
 
-def find_home(places: Studies, place: str, scale: str, experiment: str, method: str = "") -> str:
+def find_home(
+    places: Studies, own_place: str, scale: str, experiment: str, method: str = ""
+) -> str:
     """Return where the problems of an experiment are, or the runs of a method, for the study at a
     place. What a reading does not change, it shares with the study; what an alternative does not,
     with the default among the alternatives, which has as few runs.
     """
-    key, *below = place.split("/")
+    key, *below = own_place.split("/")
     default = f"{key}/{ALTERNATIVES}/{alternatives.DEFAULT}" if ALTERNATIVES in below else key
-    if place == default:
-        return place
-    shared = jobs.is_shared(places[place], places[default], scale, experiment, method)
-    return default if shared else place
+    if own_place == default:
+        return own_place
+    shared = jobs.is_shared(places[own_place], places[default], scale, experiment, method)
+    return default if shared else own_place
 
 
 def yield_jobs(
@@ -56,20 +58,20 @@ def yield_jobs(
     """Yield what the workflow can make at a scale. below: places of studies under other values that
     count. root: as for `page.list_artefacts`.
     """
-    studies = {place: study for place, study in places.items() if place == study.key}
-    for place, study in places.items():
-        if place in studies:
+    studies = {own_place: study for own_place, study in places.items() if own_place == study.key}
+    for own_place, study in places.items():
+        if own_place in studies:
             parts = chain(
-                _yield_results(places, place, scale, study.experiments),
+                _yield_results(places, own_place, scale, study.experiments),
                 _yield_artefacts(study, scale),
             )
-        elif place in below:
+        elif own_place in below:
             behind = alternatives.list_experiments(study.claims)
             claims = jobs.build_claims(study, scale), ["claims.csv", "claim_checks.csv"]
-            parts = chain(_yield_results(places, place, scale, behind), [claims])
+            parts = chain(_yield_results(places, own_place, scale, behind), [claims])
         else:
             continue
-        yield from ((job, [f"{place}/{file}" for file in files]) for job, files in parts)
+        yield from ((job, [f"{own_place}/{file}" for file in files]) for job, files in parts)
     yield jobs.build_baseline_comparison(studies, scale), ["baseline_comparison.csv", "methods.csv"]
     yield jobs.build_worth(studies, scale), ["worth.csv"]
     yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
@@ -77,16 +79,16 @@ def yield_jobs(
 
 
 def _yield_results(
-    places: Studies, place: str, scale: str, experiments: Iterable[str]
+    places: Studies, own_place: str, scale: str, experiments: Iterable[str]
 ) -> Iterator[Made]:
     """Yield problems and runs of experiments that are made at a place, with files in its folder."""
-    study = places[place]
+    study = places[own_place]
     for name in experiments:
-        if find_home(places, place, scale, name) == place:
+        if find_home(places, own_place, scale, name) == own_place:
             yield jobs.build_problems(study, scale, name), [f"problems/{name}.parquet"]
             yield jobs.build_bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
         for method in study.methods_of(name):
-            if find_home(places, place, scale, name, method) != place:
+            if find_home(places, own_place, scale, name, method) != own_place:
                 continue
             folder = f"runs/{name}/{method}"
             ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
@@ -135,21 +137,21 @@ def build_verification(
     return Verification(f"{root}{scale}", words, accounts)
 
 
-def find_jobs(places: Studies, folder: Path, listed: Collection[str]) -> dict[str, Job]:
+def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str, Job]:
     """Return the job that makes each file of a scale. listed: the files of its list. What shows
     several studies shows those of these files.
     """
     scale, root = folder.resolve().name, f"{folder}/../"
-    known = {name.split("/")[0] for name in listed}
-    shown = {place: study for place, study in places.items() if study.key in known} or places
+    keys = {name.split("/")[0] for name in files}
+    on_page = {place: study for place, study in places.items() if study.key in keys} or places
     below = [place for place in places if (folder / place).is_dir()]
-    found = {
+    job_of = {
         file: job
-        for studies in (places, shown)
-        for job, files in yield_jobs(studies, scale, below, root)
-        for file in files
+        for studies in (places, on_page)
+        for job, job_files in yield_jobs(studies, scale, below, root)
+        for file in job_files
     }
-    return found | {LIST: build_verification(shown, scale, root, listed)}
+    return job_of | {LIST: build_verification(on_page, scale, root, files)}
 
 
 def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
@@ -159,30 +161,32 @@ def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> d
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
     on_page = reading.read_page_studies(folder).items()
-    known = {key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()} | named
-    found = {problems.parent.name for problems in folder.glob("*/problems")}
-    if not found:
+    words_by_key = {
+        key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()
+    } | named
+    keys = {problems.parent.name for problems in folder.glob("*/problems")}
+    if not keys:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
         )
     check_known(folder.resolve().name, SCALES, f"{folder}: scale")
-    for key in sorted(found - known.keys()):
+    for key in sorted(keys - words_by_key.keys()):
         if not Path(key, "experiments.yaml").is_file():
             raise checked.Fault(
                 f"{folder / key}: no study {key} in config/config.yaml or here; say where it lies: "
                 f"--studies FOLDER/{key}"
             )
-        known[key] = f"./{key}"
-    return {key: word for key, word in known.items() if key in found}
+        words_by_key[key] = f"./{key}"
+    return {key: word for key, word in words_by_key.items() if key in keys}
 
 
-def find_strangers(folder: Path, known: Collection[str]) -> list[Path]:
+def find_strangers(folder: Path, names: Collection[str]) -> list[Path]:
     """Return the files of a scale, but for logs, that are none of those that its jobs make."""
     files = (file.relative_to(folder) for file in sorted(folder.rglob("*")) if file.is_file())
     return [
         folder / file
         for file in files
-        if str(file) not in known
+        if str(file) not in names
         and file.suffix != ".log"
         and not any(part == "logs" or part.startswith(".") for part in file.parts)
     ]

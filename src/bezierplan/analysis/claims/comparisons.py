@@ -14,7 +14,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.effects import Comparison
+from bezierplan.analysis.claims.effects import Contrast
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import PrintedTable, printed, printed_table, rows_of_cell
@@ -83,7 +83,7 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
     return list(dict.fromkeys(groups))
 
 
-def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Comparison]:
+def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contrast]:
     """The comparisons of a check without `rest`, in an order independent of that of the runs.
 
     Raises Untestable if its experiment was not run, has no such metric, or has no run that
@@ -131,7 +131,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                 check, list(zip(*(printed_cells[cell] for cell in cells)))
             )
             comparison_list.append(
-                Comparison(
+                Contrast(
                     terms=terms,
                     place=tuple((key, _known(rows[key].iloc[0])) for key in every),
                     cells=tuple(cells),

@@ -55,7 +55,7 @@ class Terms(NamedTuple):
         return " ".join(str(part) for part in self if part != "")
 
 
-class Comparison(NamedTuple):
+class Contrast(NamedTuple):
     """terms: what is compared. place: the values of `every` there, by column. cells: groups, or
     values of x in rising order (k).
 
@@ -129,12 +129,12 @@ class MarkedComparison(NamedTuple):
     check: Any
     primary: bool
     terms: Terms
-    comparison: Comparison | None
+    comparison: Contrast | None
     finding: Finding
     mark: str = "?"
     mark_family: str = ""
     p_family: float = math.nan
-    parts: tuple[Comparison, ...] = ()
+    parts: tuple[Contrast, ...] = ()
 
     @property
     def place(self) -> tuple[tuple[str, Any], ...]:
@@ -143,7 +143,7 @@ class MarkedComparison(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """How many units of each cell count (`Comparison.counted`)."""
+        """How many units of each cell count (`Contrast.counted`)."""
         return self.comparison.counted if self.comparison else ""
 
 
@@ -205,7 +205,7 @@ def effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
         return kind_of(check).EFFECT.of(check, points, cells)
 
 
-def of_ours(check: OfRuns, comparison: Comparison) -> float:
+def of_ours(check: OfRuns, comparison: Contrast) -> float:
     """The effect of the statistic of our values."""
     return float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
 
@@ -215,7 +215,7 @@ def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     return kind_of(check).EFFECT.holds(check, effects, margin)
 
 
-def margin_of(check: OfRuns, comparison: Comparison) -> float:
+def margin_of(check: OfRuns, comparison: Contrast) -> float:
     """The smallest effect that matters: given as a number or as a share.
 
     `{published: share}`: a share of the other group's value (of the value at the lowest x; for
@@ -258,7 +258,7 @@ def finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
     return counted(np.where(np.isinf(stratum), np.nan, stratum), paired)
 
 
-def points(comparison: Comparison, statistic: str) -> np.ndarray:
+def points(comparison: Contrast, statistic: str) -> np.ndarray:
     """A named statistic of each cell (k,), averaged over the conditions."""
     each = [
         [statistics.statistic(statistic, values) for values in finite(stratum, comparison.paired)]
@@ -268,7 +268,7 @@ def points(comparison: Comparison, statistic: str) -> np.ndarray:
 
 
 def drawn_points(
-    comparison: Comparison, statistic: str, name: str, size: int | None = None
+    comparison: Contrast, statistic: str, name: str, size: int | None = None
 ) -> np.ndarray:
     """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the
     conditions; NaN for an empty cell.
@@ -292,7 +292,7 @@ def drawn_points(
     return total / len(comparison.strata)
 
 
-def drawn_effects(check: OfRuns, comparison: Comparison, name: str) -> np.ndarray:
+def drawn_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
     """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal
     approximation; NaN with an empty cell.
     """
@@ -348,7 +348,7 @@ def _adjusted_difference(
     )
 
 
-def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
+def by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn
     from our runs.
     """
@@ -410,7 +410,7 @@ def no_difference(low: float, high: float, n: int) -> str:
     )
 
 
-def units(comparison: Comparison) -> int:
+def units(comparison: Contrast) -> int:
     """Units of the smallest cell, over all conditions."""
     sizes = [
         [len(values) for values in counted(stratum, comparison.paired)]
@@ -419,7 +419,7 @@ def units(comparison: Comparison) -> int:
     return min(map(sum, zip(*sizes)))
 
 
-def too_few(comparison: Comparison) -> str:
+def too_few(comparison: Contrast) -> str:
     """Why a comparison says nothing; empty if it may say something."""
     for stratum in comparison.strata.values():
         for cell, values in zip(comparison.cells, stratum.T):

@@ -88,6 +88,9 @@ def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
         if value is True:
             words.append(column_name(column, labels))
             continue
+        if value is None:  # the default among variants: all rows
+            words.append(f"{column_name(column, labels)} or not")
+            continue
         names = [labels.get(str(each), _plain(each)) for each in convert_to_list(value)]
         known = all(str(each) in labels for each in convert_to_list(value))
         words.append(("" if known else f"{column_name(column, labels)} ") + " and ".join(names))

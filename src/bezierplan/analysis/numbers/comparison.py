@@ -194,15 +194,15 @@ def reasons(
         lambda runs: not runs.index.unique("problem").intersection([*reconstructed]).empty,
         na_action="ignore",
     )
-    found = pd.Series("", numbers.index)
+    reason_of = pd.Series("", numbers.index)
     for reason, whose in (
         (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
         (NO_MAP, redrawn.eq(True)),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
-        found = found.mask(whose, reason)
-    return found
+        reason_of = reason_of.mask(whose, reason)
+    return reason_of
 
 
 def position(published: float, low: float, high: float) -> str:
@@ -352,9 +352,7 @@ def _described(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any
     }
 
 
-def as_printed(
-    found: tuple[float, float], ours: float, decimals: int | None
-) -> tuple[float, float]:
+def as_printed(ends: tuple[float, float], ours: float, decimals: int | None) -> tuple[float, float]:
     """Return a range of least reach whose ends are the outermost printed numbers that lie in it by
     half a unit of their last digit; without decimals, the range.
 
@@ -362,7 +360,7 @@ def as_printed(
     ((15.0, 31.0), (4.995, 5.005))
     """
     reach = LEAST_REACH * abs(ours)
-    low, high = min(found[0], ours - reach), max(found[1], ours + reach)
+    low, high = min(ends[0], ours - reach), max(ends[1], ours + reach)
     if pd.isna(decimals) or math.isnan(low):
         return low, high
     unit = 10.0**-decimals

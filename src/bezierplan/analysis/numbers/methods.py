@@ -10,7 +10,8 @@ Columns of `methods.csv`:
 - excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
   runs: median and its 95 % bootstrap interval, empty for one run
 - round, cornered: free runs whose path has no corner, and those whose path has one
-- curvature: largest curvature of the paths without corners, in 1/unit: median
+- curvature: largest curvature of the paths without corners, in 1/unit: median; empty, as the
+  columns after it, for a problem of no family
 - rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
   that; empty if every free path has a corner
 - rounded_curvature: largest curvature of that path, greater where its turns have no more room
@@ -84,28 +85,29 @@ def _rows(
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
-        kin = (each for each, own in families.items() if own.has(experiment, name, straight))
-        place = {"experiment": experiment, "family": next(kin, ""), "problem": name}
-        for method, own in of_problem.groupby("method", sort=False):
-            free = own[own["free"]]
+        kin = (key for key, kind in families.items() if kind.has(experiment, name, straight))
+        family = next(kin, "")
+        names = {"experiment": experiment, "family": family, "problem": name}
+        for method, of_method in of_problem.groupby("method", sort=False):
+            free = of_method[of_method["free"]]
             smooth = free[free["corners"] == 0]
             excess = free["gap"].to_numpy()
             draws = generator(f"methods/{experiment}/{name}/{method}")
             low, high = statistics.interval("median", excess, draws)
             yield {
-                **place,
+                **names,
                 "method": method,
                 "straight": straight,
-                "runs": len(own),
-                "free": len(free) / len(own),
+                "runs": len(of_method),
+                "free": len(free) / len(of_method),
                 "excess": np.median(excess) if len(excess) else math.nan,
                 "excess_low": low,
                 "excess_high": high,
                 "round": len(smooth),
                 "cornered": len(free) - len(smooth),
-                **_turns(smooth, problem, bound),
-                "cpu_ms": 1000 * own["cpu_s"].median(),
-                "evaluations": own["evaluations"].median(),
+                **(_turns(smooth, problem, bound) if family else {}),
+                "cpu_ms": 1000 * of_method["cpu_s"].median(),
+                "evaluations": of_method["evaluations"].median(),
             }
 
 
@@ -115,7 +117,8 @@ def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, fl
     """
     if smooth.empty:
         return {}
-    paths = map(path_of, smooth.to_dict("records"))
+    # The columns alone that a path needs: rows of all columns take longer than the curvature.
+    paths = map(path_of, smooth[["path_curve", "path_points"]].to_dict("records"))
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
@@ -172,24 +175,25 @@ def of_families(rows: pd.DataFrame) -> pd.DataFrame:
 
 def laid_out(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the papers' methods of `of_families` as words, the index their study and method."""
-    own = rows[rows["proposed"].astype(bool)].copy()
-    own.index = pd.Index(own["study"] + ", " + own["method"], name="method")
+    papers = rows[rows["proposed"].astype(bool)].copy()
+    papers.index = pd.Index(papers["study"] + ", " + papers["method"], name="method")
     corners = [
         f" ({row.cornered:.0f} of {row.round + row.cornered:.0f} have corners)"
         if row.cornered
         else ""
-        for row in own.itertuples()
+        for row in papers.itertuples()
     ]
     return pd.DataFrame(
         {
-            "scenarios": own["family"],
-            "free paths": _shares(own["free"]) + ", worst " + _shares(own["worst"]),
-            "longer than the shortest": _shares(own["excess"]),
-            "rounded shortest path, turning as gently": _shares(own["rounded"]) + corners,
+            "scenarios": papers["family"],
+            "free paths": _shares(papers["free"]) + ", worst " + _shares(papers["worst"]),
+            "longer than the shortest": _shares(papers["excess"]),
+            "rounded shortest path, turning as gently": _shares(papers["rounded"]) + corners,
             "shorter or smoother than that": [
-                f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–" for row in own.itertuples()
+                f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
+                for row in papers.itertuples()
             ],
-            "time": own["cpu_ms"].map("{:.2g} ms".format),
+            "time": papers["cpu_ms"].map("{:.3g} ms".format),
         }
     )
 

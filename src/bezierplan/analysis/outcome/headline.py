@@ -136,14 +136,14 @@ def sentence_of_numbers(numbers: pd.DataFrame) -> str:
     if numbers.empty:
         return ""
     found = positions(numbers)
-    other = len(numbers) - int(found["narrow"])
+    vague = len(numbers) - int(found["narrow"])
     text = (
         f"Of {baseline_comparison.counted(len(numbers), 'printed number')} our range is narrow "
         f"enough to tell for {found['narrow']}: {found['inside']} lie inside it, "
         f"{found['outside']} outside."
     )
-    if other:
-        text += f" The other {other} would fit almost anything."
+    if vague:
+        text += f" The other {vague} would fit almost anything."
     ours = int((numbers["reason"] == comparison.NO_MAP).sum())
     if ours:
         text += f" For {ours} the paper prints no map, so neither proves it right or wrong."

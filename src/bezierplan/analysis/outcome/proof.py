@@ -37,7 +37,7 @@ _RULES = (
 )
 
 
-class Listed(NamedTuple):
+class FileList(NamedTuple):
     """What the list of a scale says: the digests of files, by name; the account of the job that
     made each; and versions of libraries. fault: empty, or what is wrong with the list.
     """
@@ -48,31 +48,31 @@ class Listed(NamedTuple):
     fault: str = ""
 
 
-def listed(folder: Path) -> Listed:
+def listed(folder: Path) -> FileList:
     """Return what the list of a scale says; nothing if it is none."""
     file, page = folder / LIST, folder / PAGE
     text = page.read_text(encoding="utf-8") if page.is_file() else ""
     if not file.is_file():
-        return Listed({}, {}, {}, "is not there, though a page is" if text else "")
+        return FileList({}, {}, {}, "is not there, though a page is" if text else "")
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         accounts = {name: account for files, account in content["accounts"] for name in files}
-        found = Listed(dict(content["sha256"]), accounts, dict(content["versions"]))
+        found = FileList(dict(content["sha256"]), accounts, dict(content["versions"]))
     except (KeyError, TypeError, ValueError):
-        return Listed({}, {}, {}, "not a list of digests")
+        return FileList({}, {}, {}, "not a list of digests")
     if text and compute_sha256(file) not in text:
         return found._replace(fault=f"not the list that {PAGE} names")
     return found
 
 
-def unlisted(folder: Path, listed: Listed) -> list[Difference]:
+def unlisted(folder: Path, file_list: FileList) -> list[Difference]:
     """Return the files of a scale that are not what its list says; the list, if it is wrong."""
-    if listed.fault:
-        return [Difference(str(folder / LIST), listed.fault)]
-    now = {name: compute_sha256(folder / name) for name in listed.digests}
+    if file_list.fault:
+        return [Difference(str(folder / LIST), file_list.fault)]
+    now = {name: compute_sha256(folder / name) for name in file_list.digests}
     return [
         Difference(str(folder / name), "was changed since" if now[name] else "is not there")
-        for name, digest in listed.digests.items()
+        for name, digest in file_list.digests.items()
         if digest != now[name]
     ]
 
@@ -101,15 +101,15 @@ def differing(
     folder: Path,
     made: Mapping[str, bool],
     config: dict[str, Any],
-    listed: Collection[str],
+    file_list: Collection[str],
     processes: int,
 ) -> tuple[int, list[Difference]]:
     """Return how many files follow from studies and runs, and which of them are others if they are
     made again, or cannot be. made: the files of a scale, and whether they do. config: with its
-    studies. listed: files of its list, to whose studies belongs what lies above all of them.
+    studies. file_list: files of its list, to whose studies belongs what lies above all of them.
     """
     places = {Path(study).resolve().name: study for study in config["studies"]}
-    known = {name.split("/")[0] for name in listed}
+    known = {name.split("/")[0] for name in file_list}
     shown = [key for key in places if key in known] or [*places]
     faults = []
     with tempfile.TemporaryDirectory() as away:

@@ -64,15 +64,15 @@ def place_of(genes: np.ndarray, count: int, gene: int) -> int:
 
 
 @allocation_free
-def insert(genes: np.ndarray, count: int, place: int, gene: int) -> int:
+def insert(genes: np.ndarray, count: int, at: int, gene: int) -> int:
     """Write a gene to its place in a list, in place; returns how many are 1. A gene that does not
     fit is lost.
     """
     if count == len(genes):
         return count
-    for i in range(count, place, -1):
+    for i in range(count, at, -1):
         genes[i] = genes[i - 1]
-    genes[place] = gene
+    genes[at] = gene
     return count + 1
 
 
@@ -128,13 +128,13 @@ def compute_q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 class Kinds(NamedTuple):
     """Distinct chromosomes of a pool, of which many are alike. head: (places,) a place of each in
     the pool; copies: (places,) how many there are; q: (places, places) the Q of each with those
-    before it. marked: (genes,) scratch, all 0 before and after.
+    before it. marks: (genes,) scratch, all 0 before and after.
     """
 
     head: np.ndarray
     copies: np.ndarray
     q: np.ndarray
-    marked: np.ndarray
+    marks: np.ndarray
 
 
 @compile_kernel
@@ -190,19 +190,19 @@ def _is_kind(pool, place, head):
 def _add_kind(pool, place, kind, kinds):
     """Add the chromosome at a place as a new kind without copies, and its Q with the others."""
     kinds.head[kind], kinds.copies[kind] = place, 0.0
-    ones, genes = pool.ones[place, : pool.count[place]], len(kinds.marked)
+    ones, genes = pool.ones[place, : pool.count[place]], len(kinds.marks)
     for gene in ones:
-        kinds.marked[gene] = 1
+        kinds.marks[gene] = 1
     for other in range(kind):
         head, both = kinds.head[other], 0
         for k in range(pool.count[head]):
-            both += kinds.marked[pool.ones[head, k]]
+            both += kinds.marks[pool.ones[head, k]]
         only_one, only_other = len(ones) - both, pool.count[head] - both
         kinds.q[kind, other] = compute_q_statistic(
             both, genes - both - only_one - only_other, only_one, only_other
         )
     for gene in ones:
-        kinds.marked[gene] = 0
+        kinds.marks[gene] = 0
 
 
 # Entries of a memory of chromosomes.

@@ -199,14 +199,14 @@ def yield_plain_answers(
 ) -> Iterator[Reply | PlannerFailure]:
     """Yield `run_tasks` with plain values; of a run that fails, what is wrong with it."""
     for reply in run_tasks(work, tasks, again, begin, goes_on=True):
-        task, found = tasks[reply.number], reply.result
+        task, plan = tasks[reply.number], reply.result
         try:
-            if isinstance(found, PlannerFailure):
-                raise found
+            if isinstance(plan, PlannerFailure):
+                raise plan
             with answer.of(task.name):
                 if work.function == "plan" and not work.worlds:
-                    found = answer.convert_answer(found)
-            yield reply._replace(result=plain.pack(found))
+                    plan = answer.convert_answer(plan)
+            yield reply._replace(result=plain.pack(plan))
         except PlannerFailure as failure:
             yield failure
 

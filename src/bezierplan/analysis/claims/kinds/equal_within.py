@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, with_itself
-from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -52,7 +52,7 @@ def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
 EFFECT = effects.BETWEEN_GROUPS._replace(holds=claimed)
 
 
-def find(check: Options, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Contrast, name: str) -> Finding:
     """Two one-sided tests of whether two cells' difference, less the target, lies within the
     margin; p of being outside where it is.
     """

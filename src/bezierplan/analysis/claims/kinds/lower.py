@@ -39,7 +39,7 @@ from bezierplan.analysis.claims.check import (
     OfRuns,
     with_itself,
 )
-from bezierplan.analysis.claims.effects import Comparison, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
@@ -110,7 +110,7 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
         yield Terms(group, f"{check.direction} than", other), [group, other]
 
 
-def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
+def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     """Test whether the first cell is lower (higher) than the second."""
     ours = effects.of_ours(check, comparison)
     n, reason = effects.units(comparison), effects.too_few(comparison)
@@ -152,7 +152,7 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     return _without_p(finding) if ours and _are_constant(comparison) else finding
 
 
-def _are_constant(comparison: Comparison) -> bool:
+def _are_constant(comparison: Contrast) -> bool:
     """Whether each cell has one and the same number in all its units, in every condition."""
     cells = [
         values
@@ -216,9 +216,7 @@ def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _effect_size(
-    check: OfRuns, comparison: Comparison, side: int, ours: float
-) -> tuple[str, float]:
+def _effect_size(check: OfRuns, comparison: Contrast, side: int, ours: float) -> tuple[str, float]:
     """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction;
     or the difference itself.
     """

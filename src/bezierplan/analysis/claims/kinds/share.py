@@ -17,7 +17,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
-from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Effect, Finding, Terms
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import Metric, Model, Number, build_error, build_value_type, is_number
@@ -110,7 +110,7 @@ EFFECT = Effect(
 )
 
 
-def find(check: Options, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Contrast, name: str) -> Finding:
     """Test the share of units in which the event happens."""
     from scipy import stats
 
@@ -166,7 +166,7 @@ def _by_example(check: Options, finding: Finding, paper_units: int | None) -> Fi
 
 
 def _share_of_conditions(
-    finding: Finding, comparison: Comparison, threshold: float, side: int
+    finding: Finding, comparison: Contrast, threshold: float, side: int
 ) -> Finding:
     """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t
     over their shares.

@@ -17,7 +17,7 @@ from pydantic import Field
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import WORK, WithMargin
-from bezierplan.analysis.claims.effects import Comparison, Effect, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Effect, Finding, Terms
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Metric, NumberColumn
@@ -71,7 +71,7 @@ def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | No
 EFFECT = Effect(_change, _gradient, effects.on_claimed_side, reference=0)
 
 
-def find(check: Options, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Contrast, name: str) -> Finding:
     """Test whether a metric changes with x as claimed."""
     x = np.array(comparison.cells, dtype=float)
     (stratum,) = comparison.strata.values()
