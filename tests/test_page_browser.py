@@ -193,7 +193,9 @@ def test_address_of_a_number_shows_its_interval(visit, small):
     tab = visit(small, "one/table1/b/length/mean")
     cell = tab.locator("[id='one/table1/b/length/mean']")
     bar = cell.locator("svg")
-    expect(bar).to_have_attribute("aria-label", re.compile(r"printed [0-9.]+, our range .* to .*: "))
+    expect(bar).to_have_attribute(
+        "aria-label", re.compile(r"printed [0-9.]+, our range .* to .*: ")
+    )
 
 
 def test_filter_shows_claims_of_one_verdict_and_an_address_opens_any(visit, small):

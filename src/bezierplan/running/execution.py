@@ -285,7 +285,7 @@ def run_chunk(
     drew, wanted = any(row["drew"] for row in runs), len({row["condition"] for row in found})
     # A few repeats of a planner that draws may be equal by chance.
     many = len(found) >= wanted * (5 if drew else 2)
-    if not deterministic and wanted == len(answers) and many:
+    if not deterministic and 0 < wanted == len(answers) and many:
         print(f"{told_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True)
     if not moving:
         return rows.table(runs, Planned, Outcome), rows.table(times, Times)
