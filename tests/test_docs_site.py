@@ -243,7 +243,7 @@ CLICKS = [
     ("which planner for a maze", ["Which method should I use?"], "A maze"),
     ("what for a map of my own", ["Which method should I use?"], "On a map of your own begin with"),
     ("CPSO-I in Table 3", ["Tharwat 2018", "Table 3"], "Singer"),
-    ("what inconclusive means", ["What do the verdicts mean?"], "Inconclusive"),
+    ("what too wide means", ["What do the verdicts mean?"], "too wide to tell"),
 ]
 # A question, the first page that the search finds.
 SEARCHES = {
