@@ -181,5 +181,5 @@ def test_a_job_that_succeeds_when_tried_again_has_not_failed(tmp_path):
     done = starts.snakemake(tmp_path, *OF_DEFAULT, "--retries", "1")
     assert done.returncode == 0, done.stderr
     assert done.stderr.strip().splitlines()[-1].startswith("Time: ")
-    assert "1 of 1 jobs done" in done.stderr
+    assert "1 of 1 jobs, " in done.stderr
     assert "first attempt" not in done.stderr

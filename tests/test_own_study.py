@@ -13,7 +13,6 @@ import pytest
 import starts
 
 from bezierplan.__main__ import main
-from bezierplan.analysis import words
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import verify
 
@@ -275,7 +274,7 @@ def test_what_was_verified_is_listed_and_can_be_judged_again(results, monkeypatc
 def test_every_printed_number_stands_in_every_file_that_shows_printed_numbers(results):
     printed = [line.rpartition(",")[2] for line in SHAPES.splitlines()[1:]]
     compared = pd.read_csv(results / "beyond/shapes.comparison.csv")
-    assert compared["verdict"].notna().sum() == len(printed)
+    assert compared["position"].notna().sum() == len(printed)
     shown = pd.read_csv(results / "beyond/shapes.published.csv", index_col=0, dtype=str)
     assert sorted(shown.to_numpy().ravel()) == sorted(printed)
     for file in (results / "beyond/shapes.tex", results.parent / "index.html"):
@@ -310,5 +309,5 @@ def test_a_further_study_joins_those_on_the_page(results):
 
 def test_numbers_of_all_studies_count_the_study(results):
     numbers = pd.read_csv(results.parent / "numbers.csv")
-    groups = numbers.loc[numbers["counted"], "verdict"].map(words.groups("number"))
-    assert groups.value_counts().to_dict() == {"agree": 3, "disagree": 3, "open": 6}
+    positions = numbers.loc[numbers["counted"], "position"]
+    assert positions.value_counts().to_dict() == {"inside": 10, "below": 2}

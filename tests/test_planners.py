@@ -72,11 +72,11 @@ def test_no_generation_leaves_the_best_of_the_first(method):
     ("key", "method", "changes", "fault"),
     [
         ("elhoseny2017", "mga", {"population": 61}, "population: 61; parents are crossed in pairs"),
-        ("elhoseny2017", "mga", {"first_points": 60}, "first_points: 60; a curve has at most 59"),
+        ("elhoseny2017", "mga", {"first_points": 60}, "first_points: 60; at most 59"),
         ("song2016", "smooth", {"population": 21}, "population: 21"),
         ("song2016", "smooth", {"genes": 0}, "genes: 0"),
         ("song2016", "smooth", {"spacing": "arc_length"}, "spacing"),
-        ("song2016", "smooth", {"samples": 6}, "samples: 6"),
+        ("song2016", "smooth_quadratic", {"samples": 6}, "samples: 6"),
         ("tharwat2018", "ferguson", {"control_points": 3}, "3.*a multiple of 2 more, not 5"),
         ("tharwat2018", "cpso2_singer", {"chaotic_map": "constant"}, "random; a constant map"),
         ("ma2020", "bca", {"population": 21}, "population: 21"),

@@ -28,7 +28,7 @@ def test_a_value_changes_its_setting_on_its_problems_and_what_goes_along():
     assert second.settings == default.settings
     assert "generations" not in second.problems["env1_initial"]["settings"]
     changed = second.problems["env2_initial"]["settings"].items()
-    assert changed >= {"generations": 50, "stall": 100, "population": 80}.items()
+    assert changed >= {"generations": 50, "population": 80}.items()
     both = chunk(
         alternatives.apply_values(study, {"M10": 10, "M15": 200}), "operators", "random"
     ).settings

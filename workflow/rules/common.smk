@@ -356,6 +356,7 @@ def listed(wildcards):
         **judged(wildcards),
         "shown": shown(wildcards),
         "summary": summed(wildcards.scale),
+        "methods": [f"results/{wildcards.scale}/methods.csv"] if summed(wildcards.scale) else [],
         "below": [
             f"results/{wildcards.scale}/{place}/{name}.csv"
             for place in below(wildcards.scale)

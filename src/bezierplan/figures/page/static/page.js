@@ -1,4 +1,4 @@
-// Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
+// Links into closed parts, search, filters, and tables that sort. Without this script the page shows the same content.
 const find = (id) => document.getElementById(id);
 
 // Tables that sort: by data-order, or else by what a cell shows; empty cells come last.
@@ -72,46 +72,6 @@ addEventListener("afterprint", () => {
   }
 });
 
-// Tooltips: titles appear on hover only, so focus shows them as well.
-
-const tip = find("page-tip");
-
-function tipOf(cell) {
-  if (cell.title) {
-    cell.dataset.tip = cell.title;
-    cell.removeAttribute("title");
-  }
-  return cell.dataset.tip;
-}
-
-function showTip(cell) {
-  showWords(tipOf(cell), cell.getBoundingClientRect());
-  cell.querySelector("a").setAttribute("aria-describedby", tip.id);
-}
-
-function showWords(words, place) {
-  tip.replaceChildren(...words.split("; ").map((line) => Object.assign(document.createElement("div"), { textContent: line })));
-  tip.hidden = false;
-  const below = place.bottom + tip.offsetHeight + 8 < innerHeight;
-  tip.style.left = `${Math.max(8, Math.min(place.left, innerWidth - tip.offsetWidth - 8))}px`;
-  tip.style.top = `${below ? place.bottom + 4 : place.top - tip.offsetHeight - 4}px`;
-}
-
-for (const kind of ["mouseover", "focusin"]) {
-  document.addEventListener(kind, (event) => {
-    const cell = event.target.closest?.(".numbers td[title], .numbers td[data-tip]");
-    if (cell) showTip(cell);
-    else tip.hidden = true;
-  });
-}
-document.addEventListener("focusout", () => { tip.hidden = true; });
-document.addEventListener("keydown", (event) => { if (event.key === "Escape") tip.hidden = true; });
-addEventListener("scroll", () => {
-  const cell = document.activeElement.closest(".numbers td[data-tip]");
-  if (cell) showTip(cell);
-  else tip.hidden = true;
-}, { passive: true });
-
 // Figures that enlarge
 
 const enlarged = find("page-enlarged"), large = new Image();
@@ -169,9 +129,8 @@ const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Bo
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
 function shownText(element, more) {
-  if (element.tagName === "TD") return tipOf(element).split("; ").slice(0, 3).join("; ");
   if (element.tagName === "DT") return `${element.textContent.trim()}: ${element.nextElementSibling.textContent}`;
-  if (element.tagName === "TR") return more;
+  if (["TD", "TR"].includes(element.tagName)) return more;
   if (element.tagName === "P") return element.textContent;
   const parts = [...element.querySelectorAll(":scope > summary > .id, :scope > summary > .statement, :scope > :is(h1, h2), :scope > figcaption > strong")];
   return [...parts.map((part) => part.textContent), element.tagName === "FIGURE" ? more : ""].join(" ");
