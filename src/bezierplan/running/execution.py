@@ -250,8 +250,8 @@ def run_chunk(
 
     A warm-up makes times comparable, and its runs must repeat themselves. A planner whose repeats
     are equal, and which does not say so, is told on stderr. Raises PlannerFailure, naming the run,
-    if a planner fails, does not return a valid plan for the problem (`build_row`), or gives another plan
-    when its first or last run is repeated.
+    if a planner fails, does not return a valid plan for the problem (`build_row`), or gives another
+    plan when its first or last run is repeated.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
