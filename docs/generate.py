@@ -80,6 +80,9 @@ def write(folder: Path) -> None:
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
         "meaning": describe_values,
+        "methods_by_family": outcome.methods_by_family(
+            content.OUTCOME, {key: study.job.labels for key, study in page.studies.items()}
+        ),
         "table": table,
         "named_rows": named_rows,
         "about": content.about,

@@ -186,13 +186,17 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> s
         for key, text in following(folder, verdicts, *tables).items()
     )
     pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
-    overview = markdown(headline.headline(*tables, titles), pages)
+    overview = markdown(headline.headline(*tables[:2], titles), pages)
     most = int(tables[0]["n_ours"].max())
+    labels = {key: own for key, (_, own) in verdicts.items()}
+    rests = f"A verdict rests on up to {most:,} runs of a method."
+    return "\n\n".join([overview, methods_by_family(folder, labels), follow, rests])
+
+
+def methods_by_family(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the table of the papers' methods, and what its columns mean. labels: by study."""
     rows = methods.of_families(pd.read_csv(folder / METHODS))
-    beside = f"{table_text(methods.laid_out(rows))}\n\n{GENTLY}"
-    return (
-        f"{overview}\n\n{beside}\n\n{follow}\n\nA verdict rests on up to {most:,} runs of a method."
-    )
+    return f"{table_text(methods.laid_out(rows, labels))}\n\n{GENTLY}"
 
 
 def sentences(text: str) -> list[str]:

@@ -226,8 +226,8 @@ def tab(request, browser, address):  # noqa: F811
 
 # A question, what a reader clicks on from the site's home, and what is then in sight.
 CLICKS = [
-    ("is a paper right", [], "not every time and not the shortest"),
     ("overall answer", [], "narrow enough to tell"),
+    ("is a paper right", [], "not the shortest"),
     ("how long does it take", ["Which method should I use?"], "takes 1.4 to 1.8 ms"),
     ("two methods on one map", ["Which method should I use?"], "A method plans on any map that"),
     ("MGA's mutation", ["Which method should I use?", "MGA (Elhoseny 2017)"], "Mutation."),

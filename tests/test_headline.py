@@ -4,7 +4,6 @@ summary.
 
 import math
 
-import outcome
 import pandas as pd
 import pytest
 
@@ -37,12 +36,7 @@ def claims(**verdicts):
     return pd.DataFrame(rows).assign(primary=True, finding=False, main=True)
 
 
-def measured(*rows):
-    names = ("study", "feasible", "feasible_baseline", "length", "curvature", "cpu", "proposed")
-    return pd.DataFrame([dict(zip(names, row, strict=True)) for row in rows], columns=names)
-
-
-def test_numbers_claims_and_methods_are_said_in_three_sentences():
+def test_numbers_and_claims_are_said_in_two_sentences():
     found = headline.headline(
         numbers(
             ("one", "inside", 10.0, 11.0, {"reason": comparison.NO_MAP}),
@@ -53,9 +47,6 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
             one=["supported", "partly", "no effect"],
             two=["contradicted", "contradicted", "untestable"],
         ),
-        measured(
-            ("one", 0.9, 1.0, 0.5, 12.34, 3.0, True), ("one", 1.0, 1.0, 1.0, math.inf, 0.25, False)
-        ),
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
@@ -63,12 +54,9 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
         "outside. The other 1 would fit almost anything. For 1 the paper prints no map, so "
         "neither proves it right or wrong.",
         "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 cannot be decided.",
-        "The exact shortest path with rounded corners is always free: of the 1 method that are "
-        "free as often, none gives a shorter path, and none a smoother one.",
     ]
     assert found.papers.loc["one"].to_list() == [*"221", "1.1e+02 %", *"1110"]
     assert found.papers.loc["two"].to_list() == [*"100", "0 %", *"0021"]
-    assert found.methods.loc["one"].to_list() == ["90 %", "0.50 ×", "12 ×", "3 ×"]
 
 
 def test_findings_of_ours_and_other_interpretations_do_not_count():
@@ -76,22 +64,9 @@ def test_findings_of_ours_and_other_interpretations_do_not_count():
     own["finding"], own["primary"] = [False, True, False], [True, True, False]
     printed = numbers(("one", "inside", 1.0, 1.0, {}), ("one", "above", 9.0, 1.0, {}))
     found = headline.headline(
-        printed.assign(counted=[True, False]), own, measured(), {"one": "One"}
+        printed.assign(counted=[True, False]), own, {"one": "One"}
     ).papers.loc["one"]
     assert found.to_list() == ["1", "1", "1", "0 %", "1", "0", "0", "0"]
-
-
-def test_what_a_method_as_reliable_as_the_baseline_gives_is_said():
-    text = headline.beside_baseline(
-        measured(
-            ("one", 1.0, 1.0, 0.9, 2.0, 1.0, True),
-            ("one", 1.0, 1.0, 1.2, 0.1, 1.0, False),
-            ("two", 1.0, 1.0, 1.05, 0.5, 1.0, False),
-            ("two", 0.5, 1.0, 0.5, 0.5, 1.0, False),
-        )
-    )
-    assert text.endswith("1 gives a shorter path, and 2 a smoother one, 1.05 to 1.2 times as long.")
-    assert headline.beside_baseline(measured()) == ""
 
 
 def test_deviations_are_relative_and_of_quantities_that_the_paper_defines():
@@ -99,20 +74,3 @@ def test_deviations_are_relative_and_of_quantities_that_the_paper_defines():
     table = numbers(("one", "inside", 5.0, 6.85, {}), undefined, ("one", "inside", 0.0, 1.0, {}))
     assert headline.deviations(table) == pytest.approx([0.37, math.inf])
     assert headline.deviations(numbers(("one", "inside", 0.0, 0.0, {}))) == 0
-
-
-def test_markdown_leaves_out_what_no_study_has():
-    text = outcome.markdown(
-        headline.headline(
-            numbers(("one", "inside", 1.0, 1.0, {})),
-            claims(one=["supported"]),
-            measured(),
-            {"one": "One"},
-        ),
-        {},
-    )
-    assert text.startswith(
-        "**Of 1 printed number our range is narrow enough to tell for 1: 1 lie inside it, 0"
-    )
-    assert "| 1 | 1 | 1 | 0 % | 1 | 0 | 0 | 0 |" in text
-    assert outcome.RANGE in text

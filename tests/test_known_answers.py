@@ -239,14 +239,6 @@ def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, ab
 # Measures
 
 
-def test_bending_energy_is_an_integral_by_trapezoids():
-    """Of a part of the parabola y = x ** 2, from its vertex on: curvature is highest at one end."""
-    path = Path("bezier", np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 1.0]]))
-    integral = 2 * (2 / (3 * 5**1.5) + 4 / (3 * 5**0.5))
-    assert measures.bending_energy(path) == pytest.approx(integral, rel=1e-5)
-    assert measures.max_curvature(path) == pytest.approx(2.0)
-
-
 @pytest.mark.parametrize(("second", "first"), [(12.5, 1), (12.6, 2)])
 def test_the_first_generation_within_a_quarter(second, first):
     runs = pd.DataFrame({"history": [[16.0, second, 10.0, 10.0]]})

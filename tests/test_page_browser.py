@@ -191,8 +191,7 @@ def test_table_sorts(visit, small):
 
 def test_address_of_a_number_shows_its_interval(visit, small):
     tab = visit(small, "one/table1/b/length/mean")
-    cell = tab.locator("[id='one/table1/b/length/mean']")
-    bar = cell.locator("svg")
+    bar = tab.locator("[id='one/table1/b/length/mean'] svg")
     expect(bar).to_have_attribute(
         "aria-label", re.compile(r"printed [0-9.]+, our range .* to .*: ")
     )

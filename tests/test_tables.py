@@ -1,6 +1,7 @@
 """Tables as printed, and the comparison with published numbers."""
 
 import io
+import itertools
 import math
 
 import numpy as np
@@ -165,26 +166,10 @@ def test_labels_lose_no_printed_number(labels, titles):
     ]
     numbers = pd.DataFrame(
         [
-            (
-                problem,
-                method,
-                metric,
-                statistic,
-                20,
-                "m",
-                10 + n,
-                f"{problem} {method} {metric} {statistic}",
-            )
-            for problem in ("long", "brief")
-            for method in ("plain", "fast")
-            for n, (metric, statistic) in enumerate(
-                [
-                    ("length", "unstated"),
-                    ("length", "min"),
-                    ("evaluations", "median"),
-                    ("length", "max"),
-                ]
-            )
+            (*names, 20, "m", 10, " ".join(names))
+            for place in itertools.product(("long", "brief"), ("plain", "fast"))
+            for value in ("length unstated", "length min", "evaluations median", "length max")
+            for names in [(*place, *value.split())]
         ],
         columns=[*PUBLISHED.partition("\n")[0].split(","), "as_printed"],
     )

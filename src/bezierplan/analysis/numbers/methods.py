@@ -173,10 +173,17 @@ def of_families(rows: pd.DataFrame) -> pd.DataFrame:
     return worst_first.drop(columns="frees").reset_index()
 
 
-def laid_out(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the papers' methods of `of_families` as words, the index their study and method."""
+def laid_out(rows: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> pd.DataFrame:
+    """Return the papers' methods of `of_families` as words, the index their study and method.
+
+    labels: by study, name -> how it is printed.
+    """
     papers = rows[rows["proposed"].astype(bool)].copy()
-    papers.index = pd.Index(papers["study"] + ", " + papers["method"], name="method")
+    names = [
+        f"{row.study}, {labels[row.study].get(row.method, row.method)}"
+        for row in papers.itertuples()
+    ]
+    papers.index = pd.Index(names, name="method")
     corners = [
         f" ({row.cornered:.0f} of {row.round + row.cornered:.0f} have corners)"
         if row.cornered

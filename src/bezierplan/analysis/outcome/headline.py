@@ -22,23 +22,14 @@ PAPERS = {
 }
 """Columns of the table of papers -> their headings; the name of the study stands before them."""
 
-METHODS = {
-    "feasible": "free paths",
-    "length": "length",
-    "curvature": "tightest bend",
-    "cpu": "CPU time",
-}
-"""Columns of the table of proposed methods -> their headings, likewise."""
-
 
 class Headline(NamedTuple):
-    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. papers,
-    methods: by study, text in `PAPERS` and `METHODS`.
+    """sentences: of numbers and claims, as far as there are any. papers: by study, text in
+    `PAPERS`.
     """
 
     sentences: list[str]
     papers: pd.DataFrame
-    methods: pd.DataFrame
 
 
 def positions(numbers: pd.DataFrame) -> dict[str, int | str]:
@@ -59,13 +50,11 @@ def positions(numbers: pd.DataFrame) -> dict[str, int | str]:
     }
 
 
-def headline(
-    numbers: pd.DataFrame, claims: pd.DataFrame, measures: pd.DataFrame, titles: dict[str, str]
-) -> Headline:
+def headline(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str]) -> Headline:
     """The headline of some studies.
 
-    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measures: as from
-    `baseline_comparison.measured`, of all studies. titles: of the studies, by name.
+    numbers: as from `summary.numbers`. claims: as from `claims.judge`. titles: of the
+    studies, by name.
     """
     counted = numbers[numbers["counted"].astype(bool)]
     deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
@@ -78,22 +67,11 @@ def headline(
     sentences = [
         sentence_of_numbers(counted),
         _of_claims(judged.sum()) if len(claims) else "",
-        beside_baseline(measures),
     ]
     of_studies = [positions(counted[counted["study"] == study]) for study in order]
     papers = judged.join(pd.DataFrame(of_studies, index=order))
-    proposed = measures[measures["proposed"].astype(bool)].set_index("study")
-    methods = pd.DataFrame.from_dict(
-        {study: _measured(proposed.loc[study]) for study in order if study in proposed.index},
-        orient="index",
-        columns=list(METHODS),
-    )
     papers = papers.loc[order, list(PAPERS)].astype(str)
-    return Headline(
-        [sentence for sentence in sentences if sentence],
-        papers.rename_axis("study"),
-        methods.rename_axis("study"),
-    )
+    return Headline([sentence for sentence in sentences if sentence], papers.rename_axis("study"))
 
 
 def deviations(numbers: pd.DataFrame) -> np.ndarray:
@@ -108,27 +86,6 @@ def deviations(numbers: pd.DataFrame) -> np.ndarray:
     return np.divide(
         off, np.abs(published), out=np.where(off > 0, np.inf, 0.0), where=published != 0
     )
-
-
-def beside_baseline(measures: pd.DataFrame) -> str:
-    """Whether a method that is feasible as often as the baseline gives a shorter path, and how many
-    give a smoother one at which cost in length; empty without methods.
-    """
-    if measures.empty:
-        return ""
-    number = baseline_comparison.number
-    reliable = measures[measures["feasible"] >= measures["feasible_baseline"]]
-    shorter = int((reliable["length"] < 1 - baseline_comparison.EQUAL).sum())
-    smoother = reliable[reliable["curvature"] < 1 - baseline_comparison.EQUAL]
-    text = (
-        f"{baseline_comparison.BASELINE.capitalize()} is always free: of the "
-        f"{baseline_comparison.counted(len(reliable), 'method')} that are free as often, "
-        f"{shorter or 'none'} {'give' if shorter > 1 else 'gives'} a shorter path"
-    )
-    if smoother.empty:
-        return f"{text}, and none a smoother one."
-    low, high = (number(smoother["length"].agg(end)) for end in ("min", "max"))
-    return f"{text}, and {len(smoother)} a smoother one, {low} to {high} times as long."
 
 
 def sentence_of_numbers(numbers: pd.DataFrame) -> str:
@@ -157,17 +114,3 @@ def _of_claims(counts: pd.Series) -> str:
         f"{counts['partly']} hold in part, {counts['fail']} fail, and {counts['open']} cannot be "
         "decided."
     )
-
-
-def _measured(row: pd.Series) -> dict[str, str]:
-    """A proposed method beside the baseline."""
-    shown = {"feasible": f"{baseline_comparison.number(100 * row['feasible'])} %"}
-    for name in ("length", "curvature", "cpu"):
-        value = row[name]
-        if not np.isfinite(value):
-            shown[name] = "corners" if np.isinf(value) else ""
-        elif name == "length":  # near 1, where the second decimal tells
-            shown[name] = f"{value:.2f} ×"
-        else:
-            shown[name] = f"{baseline_comparison.number(value, 2)} ×"
-    return shown

@@ -102,12 +102,12 @@ def _headline(tables: list | None, titles: dict[str, str]) -> headline.Headline 
     """The headline of the studies of the page, if there are tables of all."""
     if not tables:
         return None
-    numbers, claims, measured = (table[table["study"].isin(titles)] for table in tables)
+    numbers, claims = (table[table["study"].isin(titles)] for table in tables[:2])
     if numbers.empty and claims.empty:
         return None
     known = {*numbers["study"], *claims["study"]}
     names = {key: title for key, title in titles.items() if key in known}
-    return headline.headline(numbers, claims, measured, names)
+    return headline.headline(numbers, claims, names)
 
 
 def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
@@ -151,7 +151,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "answer": answer,
         "baseline": baseline_comparison.BASELINE,
         "charts": charts,
-        "overview": lambda head: [(head.papers, headline.PAPERS), (head.methods, headline.METHODS)],
+        "headings": headline.PAPERS,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
         "grid": grid,
         "marks": MARKS,
