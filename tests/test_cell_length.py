@@ -96,13 +96,9 @@ def test_samples_of_curves_lie_on_them_and_less_than_a_cell_apart(degree):
         # Pieces of a high degree are cut, and then samples are uniform in each part alone.
         parts = np.repeat(path.points[None] + 0.5, 1 if degree < cell_length.HIGH else 8, axis=0)
         cell_length.cut(parts, degree + 1)
-<<<<<<< HEAD
-        counts = [cell_length.count_parts(part) for part in parts]
-=======
->>>>>>> main
         t = np.concatenate(
             [
-                (k + np.linspace(0, 1, cell_length.parts(part) + 1)) / len(parts)
+                (k + np.linspace(0, 1, cell_length.count_parts(part) + 1)) / len(parts)
                 for k, part in enumerate(parts)
             ]
         )
