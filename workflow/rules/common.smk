@@ -68,7 +68,9 @@ def targets():
 # what there is. Snakemake tells it nowhere else.
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 # Files of a whole scale are of the studies that are asked for, and of those that they show already.
-PAGES = {scale: reading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES}
+PAGES = {
+    scale: reading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES
+}
 FOLDERS = or_exit(reading.read_config, config)
 # A target of one study starts without the others.
 NAMED = reading.select_studies(FOLDERS, targets())
