@@ -12,7 +12,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import outcome
-import pandas as pd
 import yaml
 
 from bezierplan.analysis import study_code
@@ -58,14 +57,10 @@ def content() -> tuple[SimpleNamespace, Path]:
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
         )
-        tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
-        following = outcome.following(OUTCOME, outcome.named(studies)[1], *tables)
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
-        study.name, study.definition, study.data = name_of(key), studies[key], page.data
+        study.name, study.definition, study.data = outcome.name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
-        study.verdict = following[key].replace(" %", "\N{NO-BREAK SPACE}%")
-        study.outcome = page.headline.papers.loc[key]
         of_name = {figure["name"]: figure for figure in study.figures}
         study.picture = of_name.get(PICTURES.get(key), study.figures[0])
     return page, folder
@@ -80,15 +75,6 @@ def data_of(page: str) -> dict[str, Any]:
     """The runs, problems and workspaces that a page of results holds for its viewer."""
     packed = re.search(r'id="page-data">([^<]*)', page)[1]
     return json.loads(zlib.decompress(base64.b64decode(packed)))
-
-
-def name_of(key: str) -> str:
-    """The name of a study in a sentence.
-
-    >>> name_of("song2016"), name_of("meledje")
-    ('Song 2016', 'Meledje')
-    """
-    return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
 
 
 # --------------------------------------------------------------------------------------------------

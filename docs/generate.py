@@ -69,24 +69,29 @@ def write(folder: Path) -> None:
     """Write all generated pages below a folder."""
     page, results = content.content()
     environment = build.environment(page, results, HERE / "templates", HERE)
-    environment.filters |= {"cell": escaped, "words": in_words, "name": content.name_of}
+    environment.filters |= {
+        "as_row": lambda found: [found[0].name, *found[1]],
+        "cell": escaped,
+        "words": in_words,
+        "name": outcome.name_of,
+    }
     planners = {name: planner(name, page.studies) for name in list_planners()}
     environment.globals |= {
         "page": page,
         "papers": page.studies,
         "planners": planners,
         "references": {entry["key"]: entry for entry in content.citations()},
-        "worth": reader.records(reader.read(content.OUTCOME / outcome.WORTH)),
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
         "meaning": describe_values,
         "methods_by_family": outcome.methods_by_family(
-            content.OUTCOME, {key: study.job.labels for key, study in page.studies.items()}
+            pd.read_csv(content.OUTCOME / "methods.csv"),
+            {key: study.job.labels for key, study in page.studies.items()},
         ),
         "table": table,
         "named_rows": named_rows,
         "about": content.about,
-        "sentences": outcome.sentences,
+        "page_of": page_of,
         "origin_of_maps": origin_of_maps,
         # Files of results, and no links to methods within a page.
         "root": "../results/",
@@ -118,7 +123,7 @@ def table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
 def named_rows(shown: pd.DataFrame) -> list[list[str]]:
     """Rows of the headline's tables, each with a link to the page of its paper first."""
     link = "[{}](papers/{}.md)"
-    return [[link.format(content.name_of(key), key), *row] for key, *row in shown.itertuples()]
+    return [[link.format(outcome.name_of(key), key), *row] for key, *row in shown.itertuples()]
 
 
 def escaped(value: Any) -> str:
@@ -141,6 +146,23 @@ def in_words(value: Any) -> str:
     return "none" if value is None else str(value).replace("_", " ")
 
 
+def rows_of(study: SimpleNamespace, methods: set[str]) -> list[Any]:
+    """The rows of some methods in the table of a study's methods, the label first."""
+    if study.families is None:
+        return []
+    labels = {study.job.labels.get(name, name) for name in methods}
+    return [row for row in study.families.itertuples() if row[0] in labels]
+
+
+def page_of(key: str) -> str:
+    """The page of a paper that the repository keeps, without its title; links lead to the site's
+    pages, or to files of results.
+    """
+    text = (content.OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
+    text = re.sub(r"\]\((?:claims|numbers)\.csv\)", "](../results/index.html#KEY){.external}", text)
+    return re.sub(r"\[([^]]*)\]\(\.\./\.\./config[^)]*\)", r"\1", text).replace("#KEY", f"#{key}")
+
+
 def origin_of_maps(study: SimpleNamespace) -> str:
     """The text on where the maps of a study come from, if it has one, as a part of a page."""
     file = study.definition.folder / "workspaces" / "README.md"
@@ -157,8 +179,8 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
     """What the page of a planner shows.
 
     users: study -> its methods. algorithms: the studies whose plain Python it is. settings: rows.
-    open, achieved, resting: entries of assumptions, rows of the comparison with the baseline, and
-    claims, each with its study.
+    open, achieved, resting: entries of assumptions, rows of the table of methods, and claims, each
+    with its study.
     """
     module, text = load_planner(name), content.about(name)
     accepted = read_settings(module)
@@ -192,9 +214,7 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
                 if row["setting"] in accepted and methods & set(row["methods"] or methods)
             ]
         ),
-        achieved=of_users(
-            lambda study, methods: [row for row in study.baseline if row["method"] in methods]
-        ),
+        achieved=of_users(lambda study, methods: rows_of(study, methods)),
         resting=of_users(resting),
     )
 

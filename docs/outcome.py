@@ -8,9 +8,8 @@ samples. Next to each verdict stands the verdict at the paper's own number of ru
 
 import re
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numbers_picture
 import pandas as pd
@@ -18,30 +17,32 @@ import pandas as pd
 from bezierplan.analysis import naming
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.numbers import comparison, methods
-from bezierplan.analysis.outcome import headline, summary, verdict
+from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
 from bezierplan.running.inputs import PAPER
+from bezierplan.study.definition import Study
 from bezierplan.study.page import list_settings
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
-# Of each study: what its printed numbers say alone, and its claims under readings.
-AUDIT, BY_READING = "audit.csv", "claims_by_reading.csv"
-BASELINE_COMPARISON, METHODS = "baseline_comparison.csv", "methods.csv"
-WORTH, WHOLES = "worth.csv", "wholes.csv"
-TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
-CHECKS = "claim_checks.csv"
+TABLES = ("numbers.csv", "claims.csv", "methods.csv")
+CHECKS, WHOLES, TEXTS = "claim_checks.csv", "wholes.csv", "texts.csv"
 EVIDENCE = (*TABLES, CHECKS, WHOLES)
 """What many runs say: the site takes positions and verdicts from it alone."""
-PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
+OF_STUDY = ("audit.csv", "claims_by_reading.csv")
+"""Of each study: what its printed numbers say alone, and its claims under readings."""
+IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "The papers' methods, worst first, with the papers' numbers of runs: medians over the "
-    "problems. The exact shortest path with "
+    "The papers' methods, worst first: medians over the problems. The exact shortest path with "
     "rounded corners is asked to turn no tighter than the method's median path without corners; "
     "the column after it counts the problems in which the method is shorter than that path, or "
     "turns more gently than it can."
+)
+OPEN = (
+    "No paper prints all that its numbers depend on, so a printed number that misses ours refutes "
+    "nothing by itself."
 )
 RANGE = (
     "Our range is where 95 % of experiments of the paper's size end under our default reading. It "
@@ -49,6 +50,13 @@ RANGE = (
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
+IDENTIFIED = (
+    "Some printed lengths are, to the last digit, lengths of paths through the centres of cells, or "
+    "sums of straight and diagonal moves. Each row has the printed number, the length of the "
+    "closest such path, its cells or moves, and how many of the numbers nearby would match by "
+    "chance; rows of all numbers together have how many of how many match. They say how the "
+    "paper's numbers came about; no run of ours made one of them."
+)
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
@@ -73,78 +81,75 @@ def main() -> None:
         }
         for key, study in studies.items()
     }
-    write(*named(studies), settings, tables)
-    for picture in PICTURES:
-        study, _, name = picture.split("/")
-        shutil.copyfile(FULL / picture, KEPT / f"{study}_{name}")
-
-
-def named(studies: Mapping[str, Any]) -> tuple[dict[str, str], verdict.Files]:
-    """Return the titles of studies, and their sentences."""
     titles = {key: study.title for key, study in studies.items()}
-    files = {key: (each.verdict_file(), each.labels) for key, each in studies.items()}
-    return titles, {key: file for key, file in files.items() if file[0]}
+    shutil.copyfile(FULL / IDENTIFIED_PATHS, KEPT / "identified.png")
+    copy_tables(titles, settings)
+    answers = fill_texts(KEPT, {key: study.verdict_file() for key, study in studies.items()})
+    pd.DataFrame(
+        [(key, each.title, each.text) for key, each in answers.items()],
+        columns=["study", "title", "text"],
+    ).to_csv(KEPT / TEXTS, index=False)
+    numbers, claims = (pd.read_csv(KEPT / name) for name in TABLES[:2])
+    numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
+    for key, answer in answers.items():
+        own = claims[claims["study"] == key]
+        page = paper(titles[key], answer, own, RESULTS / key, tables[key])
+        (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
+    (KEPT / "identified.md").write_text(identified(KEPT, studies), encoding="utf-8")
+    readme = README.read_text(encoding="utf-8")
+    labels = {key: study.labels for key, study in studies.items()}
+    README.write_text(with_block(readme, BLOCK, block(KEPT, titles, labels)), encoding="utf-8")
+    if faults := [f"{key}: {line}" for key, each in answers.items() for line in each.faults]:
+        raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
 
-def write(
-    titles: Mapping[str, str],
-    verdicts: verdict.Files,
-    settings: pd.DataFrame,
-    tables: Mapping[str, Mapping[str, tuple[str, int]]],
-) -> None:
-    """Write the tables of docs/outcome, a page for each paper, and the README's part. Raises
-    FileNotFoundError if results are missing.
+def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts.Answer]:
+    """Return the answer to each paper from the tables of a folder. files: by study, if any."""
+    return {
+        key: texts.fill(texts.read(file), texts.read_tables(folder, key))
+        for key, file in files.items()
+        if file
+    }
 
-    titles: of studies, by name. verdicts: their sentences. settings: of their methods.
-    tables: of each
-    study those with printed numbers, name -> title, and how many columns name the rows.
+
+def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
+    """Copy the tables of results into docs/outcome. Raises FileNotFoundError if results are
+    missing. settings: those of methods.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
-    numbers, claims = (pd.read_csv(RESULTS / name) for name in TABLES[:2])
-    measured = pd.read_csv(FULL / BASELINE_COMPARISON)
-    claims = with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
-    for name in ("numbers.csv", WORTH, WHOLES):
+    for name in ("numbers.csv", "methods.csv", WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
-    # Of the papers' numbers of runs: to measure all turns takes longer than to find the paths.
-    for name in (BASELINE_COMPARISON, METHODS):
-        shutil.copyfile(FULL / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
-    for key in titles:
-        for name in (AUDIT, BY_READING):
+    for key in studies:
+        for name in OF_STUDY:
             shutil.copyfile(RESULTS / key / name, KEPT / f"{key}_{name}")
+    claims = with_papers_size(pd.read_csv(RESULTS / "claims.csv"), pd.read_csv(FULL / "claims.csv"))
     claims.to_csv(KEPT / "claims.csv", index=False)
-    checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in titles)
+    checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in studies)
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
     checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
     settings.to_csv(KEPT / "settings.csv", index=False)
-    numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
-    follow = following(KEPT, verdicts, numbers, claims, measured)
-    for key, text in follow.items():
-        page = paper(titles[key], text, claims[claims["study"] == key], RESULTS / key, tables[key])
-        (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
-    readme = README.read_text(encoding="utf-8")
-    readme = with_block(readme, BLOCK, table(KEPT, titles, verdicts))
-    README.write_text(readme, encoding="utf-8")
 
 
 def paper(
     title: str,
-    text: str,
+    answer: texts.Answer,
     claims: pd.DataFrame,
     folder: Path,
     tables: Mapping[str, tuple[str, int]],
 ) -> str:
-    """The page of a paper, as markdown: what follows, its main claims, and its tables
-    with the printed number beside ours in each cell.
+    """Return the page of a paper, as markdown: the answer, its main claims, and its tables with the
+    printed number beside ours in each cell.
 
-    text: as from `following`. folder: of the study's results. tables: as for `write`.
+    folder: of the study's results. tables: those with printed numbers, name -> title, and how many
+    columns name the rows.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds"}
     main = claims.loc[claims["primary"] & claims["main"].astype(bool), [*heads]].fillna("")
     parts = [
         f"# {title}",
-        text.strip(),
+        f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         table_text(main.rename(columns=heads).set_index("claim")),
         MORE.format(folder.name),
@@ -155,6 +160,30 @@ def paper(
         numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         laid = _beside(ours, numbers.dropna(subset="table_row"), heads)
         parts += [f"## {naming.heading(name)}: {table_title}", table_text(laid)]
+    return "\n\n".join(parts) + "\n"
+
+
+def identified(folder: Path, studies: Mapping[str, Study]) -> str:
+    """Return the page of the printed lengths that are lengths of paths that can be listed, as
+    markdown, from the audits in a folder.
+    """
+    picture = (
+        "![The paths of Song 2016 on their grid, with the numbers of their cells](identified.png)"
+    )
+    parts = ["# Printed lengths of paths that can be listed", IDENTIFIED, picture]
+    for key, study in studies.items():
+        rules = tuple(
+            entry.because for table in study.compared().values() for entry in table.identify
+        )
+        rows = pd.read_csv(folder / f"{key}_audit.csv", keep_default_na=False)
+        if not rules or (rows := rows[rows["rule"].str.startswith(rules)]).empty:
+            continue
+        rows = rows.assign(
+            item=rows["item"].map(naming.heading), place=rows["place"].replace(study.labels)
+        )
+        names = {"item": "in", "printed": "printed", "limit": "ours", "arithmetic": "paths"}
+        shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
+        parts += [f"## {name_of(key)}", table_text(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
 
 
@@ -169,39 +198,47 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
 
-def following(folder: Path, verdicts: verdict.Files, *tables: pd.DataFrame) -> dict[str, str]:
-    """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
-    audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
-    worth = [str(file) for file in folder.glob(WORTH)]
-    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, worth)
-
-
-def table(folder: Path, titles: Mapping[str, str], verdicts: verdict.Files) -> str:
-    """The README's headline and sentences, from a folder's tables, and the scale, from its
-    summary.
+def block(folder: Path, titles: Mapping[str, str], labels: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the README's answers, picture and table of methods, from a folder's tables. titles,
+    labels: of studies, by name.
     """
-    tables = [pd.read_csv(folder / name) for name in TABLES]
-    follow = "\n".join(
-        f"- {titles[key].partition(':')[0]}: {sentences(text)[0]}"
-        for key, text in following(folder, verdicts, *tables).items()
+    numbers, claims, of_problems = (pd.read_csv(folder / name) for name in TABLES)
+    answers = pd.read_csv(folder / TEXTS)
+    listed = "\n".join(
+        f"- **[{name_of(key)}]({KEPT}/{key}.md): {title}.** {text}"
+        for key, title, text in answers.itertuples(index=False)
     )
-    pages = {key: f"{KEPT}/{key}.md" for key in verdicts}
-    overview = markdown(headline.headline(*tables[:2], titles), pages)
-    most = int(tables[0]["n_ours"].max())
-    labels = {key: own for key, (_, own) in verdicts.items()}
-    rests = f"A verdict rests on up to {most:,} runs of a method."
-    return "\n\n".join([overview, methods_by_family(folder, labels), follow, rests])
+    head = headline.headline(numbers, claims, titles)
+    rests = f"A verdict rests on up to {int(numbers['n_ours'].max()):,} runs of a method."
+    parts = [
+        f"**{OPEN} {headline.sentence_of_methods(of_problems)}**",
+        listed,
+        PICTURE,
+        f"*{' '.join(head.sentences)} {RANGE} {rests}*",
+        methods_by_family(of_problems, labels),
+    ]
+    return "\n\n".join(parts)
 
 
-def methods_by_family(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
+def methods_by_family(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
     """Return the table of the papers' methods, and what its columns mean. labels: by study."""
-    rows = methods.of_families(pd.read_csv(folder / METHODS))
-    return f"{table_text(methods.laid_out(rows, labels))}\n\n{GENTLY}"
+    rows = methods.of_families(of_problems)
+    named = {
+        f"{study}/{name}": f"{name_of(study)}, {label}"
+        for study, own in labels.items()
+        for name, label in own.items()
+    }
+    laid = methods.laid_out(rows[rows["proposed"].astype(bool)], named)
+    return f"{table_text(laid)}\n\n*{GENTLY}*"
 
 
-def sentences(text: str) -> list[str]:
-    """What follows for a paper, sentence by sentence: README and the site's home have the first."""
-    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text.partition("\n\n")[0])
+def name_of(key: str) -> str:
+    """Return the name of a study in a sentence.
+
+    >>> name_of("song2016"), name_of("meledje")
+    ('Song 2016', 'Meledje')
+    """
+    return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
 
 
 def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
@@ -224,21 +261,6 @@ def with_block(text: str, name: str, block: str) -> str:
     if not 0 <= text.find(begin) < text.find(end):
         raise ValueError(f"no part between {begin} and {end}")
     return f"{text[: text.find(begin)]}{begin}\n{block}\n{text[text.find(end) :]}"
-
-
-def markdown(head: headline.Headline, addresses: Mapping[str, str]) -> str:
-    """Return the headline as markdown: the sentences, the papers, and what their words mean.
-
-    addresses: of the studies' pages, by name.
-    """
-    parts = [f"**{' '.join(head.sentences)}**", PICTURE]
-    if not head.papers.empty:
-        shown = head.papers.rename(
-            columns=headline.PAPERS,
-            index=lambda key: f"[{key}]({addresses[key]})" if key in addresses else key,
-        )
-        parts += [table_text(shown), RANGE]
-    return "\n\n".join(parts)
 
 
 if __name__ == "__main__":

@@ -149,8 +149,9 @@ def page(folder: Path) -> SimpleNamespace:
     printed, laid = numbers["value_published"].notna(), pd.DataFrame({"method": ["a", "b"]})
     claims = pd.DataFrame([CLAIM | row for row in CLAIMS])
     checks = [CHECK | {"id": f"C{n}"} | more for n in (1, 2, 3) for more in ({}, OPEN)]
-    row = {"study": "one", "baseline": "rounded", "conditions": 3, "feasible": 0.9, "cpu": 20.0}
-    row |= {"feasible_baseline": 1.0, "compared": 3, "length": 1.1, "bent": 3}
+    row = {"study": "one", "family": HOSTILE, "problem": "p", "runs": 10, "free": 0.9}
+    row |= {"excess": 0.1, "round": 9, "cornered": 0, "cpu_ms": 20.0, "curvature": 1.25}
+    row |= {"rounded": 0.05, "rounded_curvature": 1.25}
     audited = {"item": "table1", "place": HOSTILE, "rule": "sum", "printed": 4, "limit": 3.5}
     files = {
         "one/claims": claims,
@@ -165,10 +166,10 @@ def page(folder: Path) -> SimpleNamespace:
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),
         "claims": claims,
-        "baseline_comparison": pd.DataFrame(
+        "methods": pd.DataFrame(
             [
-                row | {"method": "a", "curvature": 1.25, "proposed": True},
-                row | {"method": "c", "curvature": "inf", "proposed": False},
+                row | {"method": "a", "proposed": True},
+                row | {"method": "c", "proposed": False, "round": 0, "cornered": 9},
             ]
         ),
     }
@@ -176,10 +177,7 @@ def page(folder: Path) -> SimpleNamespace:
         table.to_csv(folder / f"{name}.csv", index=False)
     (folder / "one/paper/figure1.svg").write_text(SVG)
     (folder / "one/paper/figure1.txt").write_text("(a) run one/first/p/b/0.\n(a) lowest mean: b.\n")
-    (folder / "one/verdict.md").write_text(
-        f"One fails. {HOSTILE}\n\n| paths | printed |\n| --- | --- |\n|  | 4 |\n"
-    )
-    summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "baseline_comparison")]
+    summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "methods")]
     made = build.page(job(), folder, summary)
     made.data |= viewed()
     study = made.data["studies"]["one"]

@@ -24,7 +24,7 @@ def test_files_in_order_lead_back_to_their_experiments():
 @pytest.mark.parametrize("scale", ["smoke", "full"])
 def test_jobs_of_all_studies_know_the_files_of_each(scale):
     given = studies()
-    shows = jobs.build_baseline_comparison(given, scale).shows
+    shows = jobs.build_methods(given, scale).shows
     for name, methods in shows.items():
         study, experiment = name.split("/")
         baseline = given[study].baseline_comparison.baseline

@@ -81,7 +81,6 @@ def folder(tmp_path_factory):
 def test_a_module_with_a_prefix_makes_everything(folder):
     made = folder / "far/away/results/full"
     for name in (
-        "baseline_comparison.csv",
         "methods.csv",
         "index.html",
         "numbers.csv",

@@ -148,7 +148,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     own = reader.studies(job(), folder, None, evidence)["one"]
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
-    assert own.baseline == []
+    assert own.families is None
     assert own.tables[0]["wholes"] == (
         f"length, {HOSTILE}: order reversed (rank correlation -0.5; ours 0 to 1)"
     )

@@ -70,7 +70,7 @@ def _run(job: Any, study: str, *outputs: str) -> None:
             for number in range(chunks)
         ],
         sources=job.sources,
-        summary=[SMOKE / f"{name}.csv" for name in ("numbers", "claims", "baseline_comparison")],
+        summary=[SMOKE / f"{name}.csv" for name in ("numbers", "claims", "methods")],
         verified=SMOKE / "verified.json",
     )
     with tempfile.TemporaryDirectory() as folder:

@@ -165,10 +165,7 @@ def describe(folder: Path, scale: str, version: str) -> None:
         file(name)
         for name in _there(
             folder,
-            *(
-                f"{results}/{each}"
-                for each in ("numbers.csv", "claims.csv", "baseline_comparison.csv")
-            ),
+            *(f"{results}/{each}" for each in ("numbers.csv", "claims.csv", "methods.csv")),
         )
     ]
     made_folder = crate.add_dataset(

@@ -268,7 +268,6 @@ def caption(wildcards, output):
     return markdown.escaped(jobs.build_caption(STUDIES[wildcards.study], name, wildcards.scale))
 
 
-FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
 
 
 def compared(scale, ending):
@@ -288,7 +287,7 @@ def of_studies(scale, name, has=lambda study: study.claims):
 
 def summed(scale):
     """Files of all studies of a scale together."""
-    names = ["numbers", "claims", "baseline_comparison"] if compared(scale, "wholes") else []
+    names = ["numbers", "claims", "methods"] if compared(scale, "wholes") else []
     return [f"results/{scale}/{name}.csv" for name in names]
 
 
@@ -331,7 +330,6 @@ def shown(wildcards):
     return [
         *artefacts,
         *([f"results/{scale}/wholes.csv"] if summed(scale) else []),
-        *of_studies(scale, "verdict.md", lambda study: study.verdict_file()),
         *of_studies(scale, "claims.csv"),
         *of_studies(scale, "claim_checks.csv"),
         *of_studies(scale, "claims_by_reading.csv"),
@@ -344,7 +342,7 @@ def judged(wildcards):
     baseline.
     """
     makes = [of(page.build_page, root=ROOT)]
-    makes += [of(jobs.build_baseline_comparison)] if summed(wildcards.scale) else []
+    makes += [of(jobs.build_methods)] if summed(wildcards.scale) else []
     parts = [results(job)(wildcards) for job in makes]
     for place in below(wildcards.scale):
         names = SimpleNamespace(scale=wildcards.scale, study=place)

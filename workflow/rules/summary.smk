@@ -1,40 +1,27 @@
 # All studies together: the summary, and the page that shows everything.
 
 
-rule baseline_comparison:
+rule methods:
     input:
-        unpack(results(of(jobs.build_baseline_comparison))),
+        unpack(results(of(jobs.build_methods))),
     output:
         report(
-            "results/{scale}/baseline_comparison.csv",
+            "results/{scale}/methods.csv",
             category="summary",
             labels={
-                "item": "comparison with the baseline",
-                "shows": "each method compared with the exact shortest path with rounded corners",
+                "item": "methods",
+                "shows": "each method on each problem, beside the exact shortest path",
             },
             caption="../report/summary.rst",
         ),
-        "results/{scale}/methods.csv",
     log:
-        "results/{scale}/baseline_comparison.log",
+        "results/{scale}/methods.log",
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.build_baseline_comparison),
+        **params(jobs.build_methods),
     script:
         "../scripts/job.py"
-
-
-# Beside a generic optimiser, which no paper has.
-use rule baseline_comparison as worth with:
-    input:
-        unpack(results(of(jobs.build_worth))),
-    output:
-        "results/{scale}/worth.csv",
-    log:
-        "results/{scale}/worth.log",
-    params:
-        **params(jobs.build_worth),
 
 
 rule summary:
@@ -57,37 +44,6 @@ rule summary:
         "../envs/bezierplan.yaml"
     params:
         **params(jobs.build_summary),
-    script:
-        "../scripts/job.py"
-
-
-# A few sentences and a small table for each paper.
-rule verdict:
-    input:
-        summary=[
-            f"results/{{scale}}/{name}.csv"
-            for name in ("numbers", "claims", "baseline_comparison", "wholes")
-        ],
-        audit=f"{RESULTS}/audit.csv",
-        worth=lambda wildcards: (
-            [f"results/{wildcards.scale}/worth.csv"] if wildcards.scale == "extended" else []
-        ),
-        sources=sources(of(jobs.build_verdict)),
-    output:
-        report(
-            f"{RESULTS}/verdict.md",
-            category="{study}",
-            labels={"item": "verdict", "shows": "what follows for the paper"},
-            caption="../report/summary.rst",
-        ),
-    log:
-        f"{RESULTS}/logs/verdict.log",
-    wildcard_constraints:
-        study=one_of(FOLLOWING),
-    conda:
-        "../envs/bezierplan.yaml"
-    params:
-        **params(jobs.build_verdict),
     script:
         "../scripts/job.py"
 

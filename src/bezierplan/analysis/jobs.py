@@ -322,22 +322,20 @@ class Audit(Job):
 
 
 @dataclass(frozen=True)
-class BaselineTable(Job):
-    """The methods of all studies beside the baselines that the studies name."""
+class MethodsTable(Job):
+    """What the methods of all studies give on each problem, beside the exact shortest path."""
 
-    baselines: dict[str, tuple[str, str | None]]
-    """By study, and the method that its paper proposes."""
+    proposed: dict[str, str | None]
+    """By study, the method that its paper proposes."""
     families: dict[str, dict[str, dict[str, Any]]]
     """By study: what the study declares."""
     repeats: dict[str, int]
     """By study/experiment."""
-    with_baselines: bool = False
-    """Whether baselines have rows too, and there is no table of problems."""
 
     def run(self, input_files, output_files):
-        """Measure the methods, beside the baselines and on each problem."""
+        """Measure the methods on each problem."""
         from bezierplan.analysis import results
-        from bezierplan.analysis.numbers import baseline_comparison, methods
+        from bezierplan.analysis.numbers import methods
         from bezierplan.running import inputs
 
         files = inputs.group_by_experiment(self.shows, input_files)
@@ -345,16 +343,12 @@ class BaselineTable(Job):
             place: results.read(files[place], number, place.partition("/")[2])
             for place, number in self.repeats.items()
         }
-        tables = [baseline_comparison.of_studies(self.baselines, by_place, self.with_baselines)]
-        if not self.with_baselines:
-            proposed = {study: method for study, (_, method) in self.baselines.items()}
-            families = {
-                study: {name: methods.Family(**each) for name, each in own.items()}
-                for study, own in self.families.items()
-            }
-            tables.append(methods.of_studies(proposed, families, by_place))
-        for table, file in zip(tables, output_files, strict=True):
-            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
+        families = {
+            study: {name: methods.Family(**each) for name, each in own.items()}
+            for study, own in self.families.items()
+        }
+        table = methods.of_studies(self.proposed, families, by_place)
+        table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -377,25 +371,6 @@ class Summary(Job):
         )
         for name, table in summed.items():
             self.write(table, getattr(output_files, name))
-
-
-@dataclass(frozen=True)
-class VerdictText(Job):
-    """What follows for a paper."""
-
-    study: str
-    labels: dict[str, str]
-
-    def run(self, input_files, output_files):
-        """Put the numbers into the sentences."""
-        import pandas as pd
-
-        from bezierplan.analysis.outcome import summary
-
-        tables = [pd.read_csv(file) for file in input_files.summary]
-        files = {self.study: (input_files.sources[0], self.labels)}
-        texts = summary.verdicts(*tables, files, [input_files.audit], list(input_files.worth))
-        Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,24 @@ def amount(number: str, unit: str) -> str:
     return f"{number} {unit}{'s' if unit in _WORDS and not one else ''}"
 
 
+def number(value: float, digits: int = 3) -> str:
+    """Return a number to some significant digits, without an exponent.
+
+    >>> number(0.12345), number(12345.6, 2)
+    ('0.123', '12,000')
+    """
+    return f"{float(f'{value:.{digits}g}'):,.10g}"
+
+
+def count(number: int, noun: str) -> str:
+    """Return how many things there are, in words.
+
+    >>> count(1, "claim"), count(3, "claim")
+    ('1 claim', '3 claims')
+    """
+    return f"{number} {noun}{'s' if number != 1 else ''}"
+
+
 def printed(value: Any, column: str, labels: Mapping[str, str]) -> str:
     """How a value of a column is printed: as its label, or a number after the column's label."""
     if isinstance(value, str):

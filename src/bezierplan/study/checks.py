@@ -19,7 +19,7 @@ from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.comparisons import mixed, told_apart
 from bezierplan.analysis.claims.variants import in_variant, variants
-from bezierplan.analysis.outcome import verdict
+from bezierplan.analysis.outcome import texts
 from bezierplan.analysis.results import select
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.figure import Figure
@@ -141,7 +141,7 @@ class Checks:
                 if header.issuperset(published.COLUMNS) and file.stem not in named:
                     raise Fault(f"{file}: no table names it; expected published: {file.name}")
             if file := study.verdict_file():
-                verdict.read(file)
+                texts.read(file)
         with self.at(shorten_path(study.folder / "artefacts.yaml")):
             self.each("tables", study.tables, self.table)
             self.each("figures", study.figures, self.figure)

@@ -228,11 +228,6 @@ class BaselineEntry(Model):
         description="name → problems of these experiments that belong together: a row of the table "
         "of methods for each method",
     )
-    worth: ExperimentName = Field(
-        None,
-        description="the experiment in which the methods stand beside a generic optimiser: "
-        "a row of `worth.csv` for each",
-    )
 
 
 class Paper(Model):

@@ -9,16 +9,15 @@ from typing import Any
 from bezierplan.analysis.claims.material import Display, StudyForClaims
 from bezierplan.analysis.jobs import (
     Audit,
-    BaselineTable,
     Bounds,
     Claims,
+    MethodsTable,
     Problems,
     Recheck,
     Runs,
     Summary,
     TableOfRuns,
     TableWithoutRuns,
-    VerdictText,
 )
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
@@ -406,30 +405,18 @@ def build_audit(study: Study, scale: str) -> Audit:
 # All studies together
 
 
-def build_worth(studies: Studies, scale: str) -> BaselineTable:
-    """The studies that have a generic optimiser beside their methods; with all baselines."""
-    return build_baseline_comparison(studies, scale, with_baselines=True)
-
-
-def build_baseline_comparison(
-    studies: Studies, scale: str, with_baselines: bool = False
-) -> BaselineTable:
-    """The methods of studies beside the baseline that these name, if they do. with_baselines:
-    `build_worth`.
-    """
-    baselines, families, repeats, shows = {}, {}, {}, {}
+def build_methods(studies: Studies, scale: str) -> MethodsTable:
+    """Return the job that measures the methods of studies beside the baseline that these name."""
+    proposed, families, repeats, shows = {}, {}, {}, {}
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
-        for name in convert_to_list(beside.worth or []) if with_baselines else beside.experiments:
-            baselines[key] = (beside.baseline, beside.proposed)
-            families[key] = {} if with_baselines else beside.plain().get("families", {})
+        proposed[key], families[key] = beside.proposed, beside.plain().get("families", {})
+        for name in beside.experiments:
             methods = [*study.experiments[name].methods, beside.baseline]
-            if with_baselines:
-                methods = study.methods_of(name)
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
             shows[f"{key}/{name}"] = count_chunks(study, name, methods, scale)
-    return BaselineTable(baselines, families, repeats, with_baselines, shows=shows)
+    return MethodsTable(proposed, families, repeats, shows=shows)
 
 
 def build_summary(studies: Studies, scale: str) -> Summary:
@@ -437,8 +424,3 @@ def build_summary(studies: Studies, scale: str) -> Summary:
     tables = [(key, name) for key, content in studies.items() for name in content.with_published()]
     code = [module for content in studies.values() for module in content.code_for("metrics")]
     return Summary(tables, code=code)
-
-
-def build_verdict(study: Study, scale: str) -> VerdictText:
-    """That of a study."""
-    return VerdictText(study.key, study.labels, sources=[study.verdict_file()])

@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import changes, files, in_printed_order
+from bezierplan.figures.page import changes, files, in_printed_order, read_answers
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -115,6 +115,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
         },
+        answer=read_answers().get(study.key) if _is_of_project(study) else None,
     )
 
 

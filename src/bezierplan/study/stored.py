@@ -72,8 +72,7 @@ def yield_jobs(
         else:
             continue
         yield from ((job, [f"{own_place}/{file}" for file in files]) for job, files in parts)
-    yield jobs.build_baseline_comparison(studies, scale), ["baseline_comparison.csv", "methods.csv"]
-    yield jobs.build_worth(studies, scale), ["worth.csv"]
+    yield jobs.build_methods(studies, scale), ["methods.csv"]
     yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
     yield page.build_page(studies, scale, root), [PAGE]
 
@@ -113,8 +112,6 @@ def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
         yield jobs.build_claims(study, scale), files
     if page.has_audit(study):
         yield jobs.build_audit(study, scale), ["audit.csv"]
-    if study.verdict_file():
-        yield jobs.build_verdict(study, scale), ["verdict.md"]
 
 
 def build_verification(

@@ -122,6 +122,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contras
             ]
             for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
         }
+        pooled = rows.groupby(column or "method")["condition"].nunique().max()
         for terms, cells in compared:
             strata = {
                 key: effects.event(check, table.reindex(columns=cells).to_numpy())
@@ -141,6 +142,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contras
                     boolean=_is_boolean(check, material),
                     paired=paired,
                     note=_note(check, rows, column, cells),
+                    conditions=int(pooled),
                 )
             )
     return comparison_list

@@ -64,7 +64,7 @@ class Contrast(NamedTuple):
     values say whether the event happened. printed: the published numbers of the cells (k,), NaN
     unless all are printed. paper_units: number of units in the paper. boolean: whether the metric
     is true or false. paired: whether equal units of the cells belong together. note: for the reader
-    of the row.
+    of the row. conditions: how many a cell pools.
     """
 
     terms: Terms
@@ -76,6 +76,7 @@ class Contrast(NamedTuple):
     boolean: bool
     paired: bool
     note: str = ""
+    conditions: int = 1
 
     @property
     def seed(self) -> str:

@@ -71,7 +71,7 @@ def judge(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
             check_rows += details
     claims = pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"})
     checks = pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
-    return claims, checks.astype({"together": "Int64"})
+    return claims, checks.astype({"together": "Int64", "conditions": "Int64"})
 
 
 # From comparisons to a verdict.
@@ -291,6 +291,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
             "scale": check.scale,
             "together": len(entry.parts) or None,
             "place": json.dumps(dict(entry.place), default=np.generic.item),
+            "conditions": entry.comparison.conditions if entry.comparison else None,
             "counted": entry.counted,
             "effect_published": effect_published,
             "published": {True: "holds", False: "fails", None: "not printed"}[agrees],

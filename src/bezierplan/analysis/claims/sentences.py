@@ -20,8 +20,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
 from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.analysis.naming import amount, column_name
-from bezierplan.analysis.numbers.baseline_comparison import number
+from bezierplan.analysis.naming import amount, column_name, number
 from bezierplan.schema.model import convert_to_list, is_number
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ Columns of `methods.csv`:
 - excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
   runs: median and its 95 % bootstrap interval, empty for one run
 - round, cornered: free runs whose path has no corner, and those whose path has one
-- curvature: largest curvature of the paths without corners, in 1/unit: median; empty, as the
-  columns after it, for a problem of no family
+- curvature: largest curvature of the first 100 paths without corners, in 1/unit: median; empty, as
+  the columns after it, for a problem of no family
 - rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
   that; empty if every free path has a corner
 - rounded_curvature: largest curvature of that path, greater where its turns have no more room
@@ -25,12 +25,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.analysis.results import Results, path_of
 from bezierplan.geometry.tightest_turn import largest_curvature
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
+
+BASELINE = "the exact shortest path with rounded corners"
+"""What every method stands beside, in words."""
+
+# Paths whose turns are measured: more take longer than to find them, and move no median.
+_MEASURED = 100
 
 # A shortest path that is longer than the straight line by less, as a share, is that line.
 _STRAIGHT = 1e-9
@@ -118,7 +124,8 @@ def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, fl
     if smooth.empty:
         return {}
     # The columns alone that a path needs: rows of all columns take longer than the curvature.
-    paths = map(path_of, smooth[["path_curve", "path_points"]].to_dict("records"))
+    measured = smooth[["path_curve", "path_points"]].head(_MEASURED)
+    paths = map(path_of, measured.to_dict("records"))
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
@@ -173,37 +180,39 @@ def of_families(rows: pd.DataFrame) -> pd.DataFrame:
     return worst_first.drop(columns="frees").reset_index()
 
 
-def laid_out(rows: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> pd.DataFrame:
-    """Return the papers' methods of `of_families` as words, the index their study and method.
+def laid_out(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+    """Return the rows of `of_families` as words, the index the method.
 
-    labels: by study, name -> how it is printed.
+    labels: name -> how it is printed; a name of several studies stands after `study/`.
     """
-    papers = rows[rows["proposed"].astype(bool)].copy()
-    names = [
-        f"{row.study}, {labels[row.study].get(row.method, row.method)}"
-        for row in papers.itertuples()
-    ]
-    papers.index = pd.Index(names, name="method")
+    names = rows["study"] + "/" + rows["method"]
+    index = [labels.get(both, labels.get(own, own)) for both, own in zip(names, rows["method"])]
     corners = [
         f" ({row.cornered:.0f} of {row.round + row.cornered:.0f} have corners)"
         if row.cornered
         else ""
-        for row in papers.itertuples()
+        for row in rows.itertuples()
     ]
     return pd.DataFrame(
         {
-            "scenarios": papers["family"],
-            "free paths": _shares(papers["free"]) + ", worst " + _shares(papers["worst"]),
-            "longer than the shortest": _shares(papers["excess"]),
-            "rounded shortest path, turning as gently": _shares(papers["rounded"]) + corners,
+            "scenarios": rows["family"].to_list(),
+            "free paths": [
+                _share(row.free) + (f", worst {_share(row.worst)}" if row.worst < row.free else "")
+                for row in rows.itertuples()
+            ],
+            "longer than the shortest": [*map(_share, rows["excess"])],
+            "rounded shortest path, turning as gently": [
+                _share(row.rounded) + end for row, end in zip(rows.itertuples(), corners)
+            ],
             "shorter or smoother than that": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
-                for row in papers.itertuples()
+                for row in rows.itertuples()
             ],
-            "time": papers["cpu_ms"].map("{:.3g} ms".format),
-        }
+            "time": [*map("{:.3g} ms".format, rows["cpu_ms"])],
+        },
+        index=pd.Index(index, name="method"),
     )
 
 
-def _shares(values: pd.Series) -> pd.Series:
-    return values.map(lambda value: "–" if math.isnan(value) else f"{value:.1%}".replace("%", " %"))
+def _share(value: float) -> str:
+    return "–" if math.isnan(value) else f"{naming.number(round(100 * value, 2))} %"

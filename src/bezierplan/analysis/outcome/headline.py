@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import words
-from bezierplan.analysis.numbers import baseline_comparison, comparison
+from bezierplan.analysis import naming, words
+from bezierplan.analysis.numbers import comparison, methods
 
 PAPERS = {
     "numbers": "printed numbers",
@@ -95,7 +95,7 @@ def sentence_of_numbers(numbers: pd.DataFrame) -> str:
     found = positions(numbers)
     vague = len(numbers) - int(found["narrow"])
     text = (
-        f"Of {baseline_comparison.counted(len(numbers), 'printed number')} our range is narrow "
+        f"Of {naming.count(len(numbers), 'printed number')} our range is narrow "
         f"enough to tell for {found['narrow']}: {found['inside']} lie inside it, "
         f"{found['outside']} outside."
     )
@@ -107,10 +107,24 @@ def sentence_of_numbers(numbers: pd.DataFrame) -> str:
     return text
 
 
+def sentence_of_methods(of_problems: pd.DataFrame) -> str:
+    """Return what the papers' methods are worth beside the exact shortest path with rounded
+    corners. of_problems: as from `methods.of_studies`.
+    """
+    rows = methods.of_families(of_problems)
+    rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
+    none = int((rows["adds"] == 0).sum())
+    return (
+        "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
+        f"{none} of {naming.count(len(rows), 'kind')} of scenarios the paper's method is nowhere "
+        "shorter than it, nor smoother than it can be."
+    )
+
+
 def _of_claims(counts: pd.Series) -> str:
     """How many claims hold, and how many fail. counts: by group."""
     return (
-        f"Of {baseline_comparison.counted(counts.sum(), 'claim')} {counts['hold']} hold, "
+        f"Of {naming.count(counts.sum(), 'claim')} {counts['hold']} hold, "
         f"{counts['partly']} hold in part, {counts['fail']} fail, and {counts['open']} cannot be "
         "decided."
     )

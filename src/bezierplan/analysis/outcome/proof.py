@@ -29,10 +29,8 @@ _RULES = (
     "claims",
     "claims_of_reading",
     "audit",
-    "baseline_comparison",
-    "worth",
+    "methods",
     "summary",
-    "verdict",
     "page",
 )
 

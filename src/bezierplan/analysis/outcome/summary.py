@@ -1,4 +1,4 @@
-"""All studies together: every published number next to ours, every claim, and what follows."""
+"""All studies together: every published number next to ours, and every claim."""
 
 import itertools
 from collections.abc import Mapping
@@ -9,7 +9,6 @@ import pandas as pd
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.numbers import comparison
-from bezierplan.analysis.outcome import verdict
 
 
 def gathered(
@@ -27,35 +26,6 @@ def gathered(
         "numbers": numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
         "claims": pd.concat(claims, ignore_index=True) if claims else none,
         "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
-    }
-
-
-def verdicts(
-    numbers: pd.DataFrame,
-    claims: pd.DataFrame,
-    measures: pd.DataFrame,
-    whole: pd.DataFrame,
-    files: verdict.Files,
-    audit_files: list[str],
-    worth: list[str],
-) -> dict[str, str]:
-    """By study, what follows. measures: rows with the columns
-    `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`. worth: the file of methods beside a
-    generic optimiser, if there is one.
-    """
-    audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
-    tables = {
-        "numbers": numbers,
-        "claims": claims,
-        "baseline": measures,
-        "wholes": whole,
-        "audit": audits,
-    }
-    if worth:
-        tables["worth"] = pd.read_csv(*worth)
-    return {
-        study: verdict.markdown(verdict.read(file), verdict.own_rows(tables, study), labels)
-        for study, (file, labels) in files.items()
     }
 
 

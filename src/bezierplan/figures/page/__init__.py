@@ -12,6 +12,8 @@ from bezierplan.places import TREE
 HERE = Path(__file__).parent
 SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
 """The settings of all studies behind it."""
+TEXTS = SETTINGS.with_name("texts.csv")
+"""The answer to each paper: study, title, text."""
 
 
 def files() -> list[str]:
@@ -36,6 +38,14 @@ def changes(study: str, settings: Iterable[tuple[str, str, str]]) -> list[str]:
         for of, name in now | before
         if now.get((of, name)) != before.get((of, name))
     ]
+
+
+def read_answers() -> dict[str, tuple[str, str]]:
+    """Read title and text of the README's outcome, by study."""
+    if not TEXTS.is_file():
+        return {}
+    with TEXTS.open(encoding="utf-8", newline="") as rows:
+        return {row["study"]: (row["title"], row["text"]) for row in csv.DictReader(rows)}
 
 
 def in_printed_order(names: Iterable[str]) -> list[str]:

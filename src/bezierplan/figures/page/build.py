@@ -13,7 +13,7 @@ from typing import Any
 
 from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
-from bezierplan.analysis.numbers import baseline_comparison, comparison
+from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.proof import made_by
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
@@ -42,7 +42,7 @@ def page(
     """What the templates show. data: what the viewer reads.
 
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    baseline_comparison.csv, if the scale has them. proof: the file of the check of the runs
+    methods.csv, if the scale has them. proof: the file of the check of the runs
     shown (`running.recheck`), if there is one. evidence: as for `reader.studies`. results: of the
     experiments whose runs the viewer shows, by study/experiment.
     """
@@ -68,6 +68,7 @@ def page(
         ),
         verified=verified,
         studies=studies,
+        compared=[key for key, own in studies.items() if own.families is not None],
         data=data
         | {
             "studies": {
@@ -149,7 +150,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     environment.globals |= {
         "address": addresses.address,
         "answer": answer,
-        "baseline": baseline_comparison.BASELINE,
+        "baseline": methods.BASELINE,
         "charts": charts,
         "headings": headline.PAPERS,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
@@ -183,7 +184,7 @@ def short(value: Any, digits: int = 4) -> str:
     """A value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
-    return baseline_comparison.number(value, digits) if isinstance(value, float) else str(value)
+    return naming.number(value, digits) if isinstance(value, float) else str(value)
 
 
 def labelled(text: Any, labels: dict[str, str]) -> str:

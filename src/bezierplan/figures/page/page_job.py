@@ -63,6 +63,8 @@ class StudyView(NamedTuple):
     changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
     experiments: dict[str, ExperimentView]
+    answer: tuple[str, str] | None = None
+    """Title and text of the README's outcome."""
 
 
 FILES = {

@@ -12,6 +12,7 @@ import pandas as pd
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
+from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import address, of_cells
@@ -39,13 +40,13 @@ def of_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
 
 
 class Evidence(NamedTuple):
-    """What many runs say of all studies: their numbers, claims, comparisons with the baseline,
-    comparisons of claims, and level and order of columns.
+    """What many runs say of all studies: their numbers, claims, methods by problem, comparisons of
+    claims, and level and order of columns.
     """
 
     numbers: pd.DataFrame
     claims: pd.DataFrame
-    measures: pd.DataFrame
+    methods: pd.DataFrame
     checks: pd.DataFrame
     wholes: pd.DataFrame
 
@@ -62,8 +63,8 @@ def studies(
 ) -> dict[str, SimpleNamespace]:
     """All studies, from the files in the folder of a scale, which are the mirror of the papers.
 
-    summary: numbers, claims and comparisons with the baseline of all studies, if the scale has
-    them. evidence: what stands in place of the scale's own positions and verdicts.
+    summary: numbers, claims and methods by problem of all studies, if the scale has them.
+    evidence: what stands in place of the scale's own positions and verdicts.
     """
     numbers, _, measured = summary or [None] * 3
     pages = {}
@@ -78,8 +79,7 @@ def studies(
             _table(key, name, each, folder, described.labels, counted, substitute)
             for name, each in described.tables.items()
         ]
-        baseline = substitute.measures if substitute else of_study(measured, key)
-        verdict = folder / key / "verdict.md"
+        of_problems = substitute.methods if substitute else of_study(measured, key)
         pages[key] = SimpleNamespace(
             key=key,
             job=described,
@@ -91,24 +91,18 @@ def studies(
                 _assumption(key, each, described.labels) for each in described.assumptions
             ],
             audit=records(files.get("audit", pd.DataFrame())),
-            baseline=with_corners(baseline) if len(baseline) else [],
-            gap=gap(own_tables),
+            families=_families(of_problems, described.labels),
             shown=[],
-            verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
         )
     return pages
 
 
-def with_corners(baseline: pd.DataFrame) -> list[Row]:
-    """Rows of a comparison with the baseline. Added: cornered, for paths with corners."""
-    return records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
-
-
-def gap(tables: list[Row]) -> float | None:
-    """The median gap over the numbers of tables that count, if one has a gap."""
-    cells = (cell for table in tables for cell in table["numbers"])
-    gaps = [cell["gap"] for cell in cells if cell["counted"] and cell["gap"] is not None]
-    return float(np.median(gaps)) if gaps else None
+def _families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
+    """Return the methods of a study on each family of its problems, as words; None without."""
+    if of_problems.empty:
+        return None
+    rows = methods.of_families(of_problems)
+    return methods.laid_out(rows, labels) if len(rows) else None
 
 
 def _method(study: str, name: str, method: Any) -> Row:
