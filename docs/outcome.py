@@ -51,7 +51,7 @@ RANGE = (
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
 IDENTIFIED = (
-    "Some printed lengths are, to the last digit, lengths of paths through the centres of cells, or "
+    "Some printed lengths are, to the last digit, lengths of paths through centres of cells, or "
     "sums of straight and diagonal moves. Each row has the printed number, the length of the "
     "closest such path, its cells or moves, and how many of the numbers nearby would match by "
     "chance; rows of all numbers together have how many of how many match. They say how the "

@@ -289,8 +289,8 @@ class ExperimentsFile(Model):
     )
     baseline_comparison: BaselineEntry = Field(
         None,
-        description="the baseline with which the summary compares the study's methods: a row of "
-        "`baseline_comparison.csv` for each method",
+        description="the baseline beside which the summary measures the study's methods: a row of "
+        "`methods.csv` for each method and problem",
     )
 
 
