@@ -16,7 +16,7 @@ import yaml
 
 from bezierplan.analysis import study_code
 from bezierplan.commands import read_studies
-from bezierplan.figures.page import build, reader
+from bezierplan.figures.page import EVIDENCE, build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
 
@@ -42,9 +42,9 @@ def results() -> tuple[str, Path]:
 
 
 def content() -> tuple[SimpleNamespace, Path]:
-    """What `build.page` gives for the results that there are, and their folder. Added to a study:
-    name, as people search for it; definition; data, of the viewer; outcome, its row of the
-    headline; picture, one of its figures. Raises Fault.
+    """Return what `build.page` gives for the results that there are, and their folder. Each study
+    also gets its name, as people search for it; definition; data, of the viewer; picture, one of
+    its figures. Raises Fault.
     """
     scale, folder = results()
     with contextlib.chdir(ROOT):
@@ -52,10 +52,10 @@ def content() -> tuple[SimpleNamespace, Path]:
         whole = page_jobs.build_page(studies, scale)
         study_code.functions(whole.code)  # what a study's metrics mean
         page = build.page(
-            whole.page,
+            whole.page._replace(stored=[*studies]),
             folder,
             [str(folder / name) for name in outcome.TABLES],
-            evidence=reader.Evidence(*(reader.read(OUTCOME / name) for name in outcome.EVIDENCE)),
+            evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
         )
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():

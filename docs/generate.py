@@ -89,7 +89,6 @@ def write(folder: Path) -> None:
             {key: study.job.labels for key, study in page.studies.items()},
         ),
         "table": table,
-        "named_rows": named_rows,
         "about": content.about,
         "page_of": page_of,
         "origin_of_maps": origin_of_maps,
@@ -118,12 +117,6 @@ def table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     lines += ["| " + " | ".join(escaped(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
-
-
-def named_rows(shown: pd.DataFrame) -> list[list[str]]:
-    """Rows of the headline's tables, each with a link to the page of its paper first."""
-    link = "[{}](papers/{}.md)"
-    return [[link.format(outcome.name_of(key), key), *row] for key, *row in shown.itertuples()]
 
 
 def escaped(value: Any) -> str:

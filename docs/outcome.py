@@ -28,8 +28,6 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 TABLES = ("numbers.csv", "claims.csv", "methods.csv")
 CHECKS, WHOLES, TEXTS = "claim_checks.csv", "wholes.csv", "texts.csv"
-EVIDENCE = (*TABLES, CHECKS, WHOLES)
-"""What many runs say: the site takes positions and verdicts from it alone."""
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
@@ -98,7 +96,7 @@ def main() -> None:
     (KEPT / "identified.md").write_text(identified(KEPT, studies), encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
     labels = {key: study.labels for key, study in studies.items()}
-    README.write_text(with_block(readme, BLOCK, block(KEPT, titles, labels)), encoding="utf-8")
+    README.write_text(with_block(readme, BLOCK, block(KEPT, labels)), encoding="utf-8")
     if faults := [f"{key}: {line}" for key, each in answers.items() for line in each.faults]:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
@@ -198,9 +196,9 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
 
-def block(folder: Path, titles: Mapping[str, str], labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the README's answers, picture and table of methods, from a folder's tables. titles,
-    labels: of studies, by name.
+def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the README's answers, picture and table of methods, from a folder's tables. labels: of
+    studies, by name.
     """
     numbers, claims, of_problems = (pd.read_csv(folder / name) for name in TABLES)
     answers = pd.read_csv(folder / TEXTS)
@@ -208,13 +206,13 @@ def block(folder: Path, titles: Mapping[str, str], labels: Mapping[str, Mapping[
         f"- **[{name_of(key)}]({KEPT}/{key}.md): {title}.** {text}"
         for key, title, text in answers.itertuples(index=False)
     )
-    head = headline.headline(numbers, claims, titles)
+    said = f"{headline.sentence_of_numbers(numbers)} {headline.sentence_of_claims(claims)}"
     rests = f"A verdict rests on up to {int(numbers['n_ours'].max()):,} runs of a method."
     parts = [
         f"**{OPEN} {headline.sentence_of_methods(of_problems)}**",
         listed,
         PICTURE,
-        f"*{' '.join(head.sentences)} {RANGE} {rests}*",
+        f"*{said} {RANGE} {rests}*",
         methods_by_family(of_problems, labels),
     ]
     return "\n\n".join(parts)

@@ -138,7 +138,7 @@ def job() -> PageJob:
         experiments={},
         changes=[],
     )
-    return PageJob("smoke", {"one": study}, outcome=False)
+    return PageJob("smoke", {"one": study}, stored=[])
 
 
 def page(folder: Path) -> SimpleNamespace:

@@ -17,7 +17,6 @@ def test_readme_shows_the_outcome_that_is_kept():
     studies = read_studies()
     shown = outcome.block(
         ROOT / outcome.KEPT,
-        {key: study.title for key, study in studies.items()},
         {key: study.labels for key, study in studies.items()},
     )
     assert outcome.with_block(readme, outcome.BLOCK, shown) == readme

@@ -124,7 +124,11 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
     ]
     lines = [f"Made: {', '.join(made)}"] if made else []
     lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    figures = sorted(file for file in outputs if file.suffix == ".svg")
+    lines += [f"Figure: {figures[0]}"] if len(figures) == 1 else []
     for page in sorted(file for file in outputs if file.name == "index.html"):
+        said = re.search(r'<p class="headline">(.*?)</p>', page.read_text(encoding="utf-8"))
+        lines += [said[1]] if said else []
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []
 

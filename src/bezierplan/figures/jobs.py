@@ -137,7 +137,7 @@ class Page(Job):
     def run(self, input_files, output_files):
         """Write the page."""
         from bezierplan.analysis import study_code
-        from bezierplan.figures.page import build
+        from bezierplan.figures.page import EVIDENCE, build, reader
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
@@ -147,6 +147,7 @@ class Page(Job):
             folder,
             list(input_files.summary),
             input_files.verified,
+            reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.stored else None,
             results=inputs.group_by_experiment(self.shows, input_files),
         )
         Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")

@@ -4,7 +4,13 @@ import hashlib
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import changes, files, in_printed_order, read_answers
+from bezierplan.figures.page import (
+    EVIDENCE,
+    changes,
+    files,
+    in_printed_order,
+    read_answers,
+)
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -62,12 +68,17 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
 
 def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     """The page of a scale."""
-    behind, outcome = find_results(studies, scale, root), any(map(_is_of_project, studies.values()))
     shown = {key: _describe_study(own, scale, root) for key, own in studies.items()}
+    # At scale extended the outcome is what is made.
+    known = [
+        key
+        for key, own in studies.items()
+        if scale != "extended" and _is_of_project(own) and not shown[key].changes
+    ]
     return Page(
-        PageJob(scale, shown, outcome=outcome and scale != "extended"),
-        sources=files(),
-        shows=behind,
+        PageJob(scale, shown, known),
+        sources=[*files(), *(EVIDENCE if known else [])],
+        shows=find_results(studies, scale, root),
         code=[module for own in studies.values() for module in own.code_for("metrics")],
     )
 

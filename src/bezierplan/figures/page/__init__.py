@@ -14,6 +14,11 @@ SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
 """The settings of all studies behind it."""
 TEXTS = SETTINGS.with_name("texts.csv")
 """The answer to each paper: study, title, text."""
+EVIDENCE = [
+    str(SETTINGS.with_name(f"{name}.csv"))
+    for name in ("numbers", "claims", "methods", "claim_checks", "wholes")
+]
+"""What many runs say of all studies: tables of `reader.Evidence`."""
 
 
 def files() -> list[str]:

@@ -8,11 +8,11 @@ from bezierplan.analysis import words
 from bezierplan.figures.page.reader import Row
 
 
-def about_scale(scale: str, repeats: list[list[int]], outcome: bool) -> str:
+def about_scale(scale: str, repeats: list[list[int]], evidence: bool) -> str:
     """How many runs the results of a scale rest on, and where the evidence of many runs is.
 
     repeats: of each study, the least and the largest number of runs of a method under a condition.
-    outcome: whether the project keeps the outcome of many runs of these studies.
+    evidence: whether positions and verdicts are those of many runs.
     """
     runs = _span([number for own in repeats for number in own])
     first = {
@@ -20,13 +20,13 @@ def about_scale(scale: str, repeats: list[list[int]], outcome: bool) -> str:
         "full": "as many runs as the papers report",
         "extended": "enough runs to judge methods",
     }[scale]
-    text = f"All of this page is of scale {scale}, {first}: {runs} runs per method and condition."
-    if not outcome:
-        return text
+    made = f"scale {scale}, {first}: {runs} runs per method and condition"
+    if not evidence:
+        return f"All of this page is of {made}."
     return (
-        f"{text} It is the mirror: the papers' tables and figures, made again and laid over the "
-        "printed ones. The evidence, what many runs say, is kept in docs/outcome, a page a paper; "
-        "verdicts there rest on more runs than those here."
+        f"Tables, figures and paths are of {made}. Ranges, positions and verdicts are those of "
+        "many runs, which docs/outcome keeps; the tick in a bar is what was made here. A study "
+        "whose settings were changed since has its own, and says so."
     )
 
 

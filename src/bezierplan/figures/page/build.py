@@ -11,6 +11,8 @@ from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
+import pandas as pd
+
 from bezierplan.analysis import naming, words
 from bezierplan.analysis.claims.sentences import meaning
 from bezierplan.analysis.numbers import comparison, methods
@@ -60,12 +62,9 @@ def page(
     verified = _verified(Path(proof)) if proof else None
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.about_scale(job.scale, repeats, job.outcome),
+        about_scale=answer.about_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else made_by(),
-        headline=_headline(
-            [*evidence[:3]] if evidence else tables,
-            {key: own.title for key, own in job.studies.items()},
-        ),
+        headline=_headline(_replace(tables, evidence, job.stored), job.studies),
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -77,6 +76,19 @@ def page(
             }
         },
     )
+
+
+def _replace(
+    tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, stored: list[str]
+) -> list[pd.DataFrame] | None:
+    """Return numbers, claims and methods of all studies, those of the evidence in place of the
+    scale's own.
+    """
+    if not evidence:
+        return tables
+    many = evidence.of(stored)[: len(tables or evidence)]
+    own = [table[~table["study"].isin(stored)] for table in tables or []]
+    return [pd.concat(both, ignore_index=True) for both in zip(many, own)] if own else [*many]
 
 
 def _verified(file: Path) -> dict[str, Any]:
@@ -99,16 +111,13 @@ def _share_workspaces(data: dict[str, dict]) -> None:
         problem["workspace"] = names[problem["workspace"]]
 
 
-def _headline(tables: list | None, titles: dict[str, str]) -> headline.Headline | None:
-    """The headline of the studies of the page, if there are tables of all."""
+def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
+    """Return the sentences on numbers and claims of the studies of the page, if there are any."""
     if not tables:
-        return None
-    numbers, claims = (table[table["study"].isin(titles)] for table in tables[:2])
-    if numbers.empty and claims.empty:
-        return None
-    known = {*numbers["study"], *claims["study"]}
-    names = {key: title for key, title in titles.items() if key in known}
-    return headline.headline(numbers, claims, names)
+        return []
+    numbers, claims = (table[table["study"].isin([*studies])] for table in tables[:2])
+    said = (headline.sentence_of_numbers(numbers), headline.sentence_of_claims(claims))
+    return [*filter(None, said)]
 
 
 def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
@@ -152,7 +161,6 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "answer": answer,
         "baseline": methods.BASELINE,
         "charts": charts,
-        "headings": headline.PAPERS,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
         "grid": grid,
         "marks": MARKS,

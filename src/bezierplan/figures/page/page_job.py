@@ -80,5 +80,5 @@ class PageJob(NamedTuple):
 
     scale: str
     studies: dict[str, StudyView]
-    outcome: bool
-    """Whether the project keeps the outcome of many runs of these studies."""
+    stored: list[str]
+    """Studies of whose settings the project keeps the outcome of many runs."""

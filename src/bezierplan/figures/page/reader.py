@@ -50,9 +50,9 @@ class Evidence(NamedTuple):
     checks: pd.DataFrame
     wholes: pd.DataFrame
 
-    def of(self, study: str) -> "Evidence":
-        """That of one study."""
-        return Evidence(*(of_study(table, study) for table in self))
+    def of(self, studies: list[str]) -> "Evidence":
+        """Return that of some studies."""
+        return Evidence(*(table[table["study"].isin(studies)] for table in self))
 
 
 def studies(
@@ -70,7 +70,7 @@ def studies(
     pages = {}
     for key, described in job.studies.items():
         files = {name: read(folder / key / FILES[name]) for name in described.files}
-        substitute = evidence and evidence.of(key)
+        substitute = evidence.of([key]) if evidence and key in job.stored else None
         if substitute:
             files |= {"claims": substitute.claims, "checks": substitute.checks}
         claims = _claims(key, described, files)
