@@ -207,12 +207,11 @@ def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
         for key, title, text in answers.itertuples(index=False)
     )
     said = f"{headline.sentence_of_numbers(numbers)} {headline.sentence_of_claims(claims)}"
-    rests = f"A verdict rests on up to {int(numbers['n_ours'].max()):,} runs of a method."
     parts = [
         f"**{OPEN} {headline.sentence_of_methods(of_problems)}**",
         listed,
         PICTURE,
-        f"*{said} {RANGE} {rests}*",
+        f"*{said} {RANGE}*",
         methods_by_family(of_problems, labels),
     ]
     return "\n\n".join(parts)
