@@ -137,6 +137,7 @@ def job() -> PageJob:
         files=["claims", "checks", "audit"],
         experiments={},
         changes=[],
+        answer=("One fails", HOSTILE),
     )
     return PageJob("smoke", {"one": study}, stored=[])
 

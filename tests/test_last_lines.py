@@ -15,12 +15,16 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
         "Results: results/full/song2016",
         "Time: 0:03:24",
     ]
+    PAGE.parent.mkdir(parents=True)
+    PAGE.write_text('<p class="headline">Of 3 numbers 2 fit.</p>')
     page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
     made = {PAGE, *(ROUTE.with_name(name) for name in ("a.tex", "b.tex", "c.svg", "c.png"))}
     assert plugin.last_lines(made, 1) == [
         "Made: 2 tables, 1 figure, 1 page",
         "Results: results/full, results/full/song2016",
         "Time: 0:00:01",
+        f"Figure: {ROUTE.with_name('c.svg')}",
+        "Of 3 numbers 2 fit.",
         page,
     ]
 

@@ -93,6 +93,7 @@ def test_families_stand_worst_first_and_say_where_a_method_adds_something(rows):
     smoother = rows.assign(rounded_curvature=rows["curvature"] * 1.1)
     assert methods.of_families(shorter)["adds"].sum() == 2
     assert methods.of_families(smoother)["adds"].sum() == 1
-    text = methods.laid_out(table, {"mine": {}})
-    assert text["scenarios"].tolist() == ["in the way", "one"]
-    assert text.iloc[0]["free paths"] == "75.0 %, worst 75.0 %"
+    text = methods.laid_out(table, {"mine/curved": "Curves"})
+    assert text["scenarios"].tolist() == table["family"].tolist()
+    assert text["free paths"].tolist() == ["75 %", "100 %", "100 %"]
+    assert text.index[0] == "Curves"
