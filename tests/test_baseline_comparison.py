@@ -136,4 +136,4 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
         assert math.isnan(found[0]), name
         assert found[1] in (3.5, 4.0), name
     with pytest.raises(ValueError, match="run clear is said to be feasible"):
-        elhoseny2017.length_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
+        elhoseny2017.measure_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
