@@ -12,8 +12,9 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 @allocation_free
 def _compute_speed(differences: np.ndarray, t: float) -> float:
-    """Return |B'(t)| of a piece from its control points' differences (degree, 2), by Horner's
-    rule.
+    """Return |B'(t)| of a piece by Horner's rule.
+
+    differences: (degree, 2), of its control points.
     """
     n = len(differences) - 1
     s = 1.0 - t

@@ -1,6 +1,4 @@
-"""Edges by place: a raster of square bins, so that a segment is compared with the edges near it
-only.
-"""
+"""Edges by place: a raster of square bins, so that a segment is compared with near edges only."""
 
 import math
 from typing import NamedTuple

@@ -85,9 +85,7 @@ def cut(pieces: np.ndarray, points: int) -> None:
 
 
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last,
-    ..., 1.
-    """
+    """Return x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, ..., 1."""
     x, y, t, power = np.empty((4, last + 1))
     write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
@@ -162,7 +160,7 @@ def write_samples(
 
 @allocation_free
 def _find_cell(coordinate: float, before: int) -> int:
-    """Return the column or row of a coordinate; next to a grid line, the previous sample's if
+    """Return the column or row of a coordinate; near a grid line, the previous sample's if
     close.
     """
     line = math.floor(coordinate + 0.5)
@@ -208,8 +206,8 @@ def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows:
 
 @allocation_free
 def count_occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
-    """Count the cells of a sequence that are occupied or outside the grid; `occupied` is bool
-    (rows, columns).
+    """Count the cells of a sequence that are occupied, bool (rows, columns), or outside the
+    grid.
     """
     count = 0
     for i in range(len(columns)):
@@ -378,9 +376,7 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Tell whether a path is a polyline through centres of cells along rows, columns and
-    diagonals.
-    """
+    """Tell whether a path leads through centres of cells along rows, columns and diagonals."""
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

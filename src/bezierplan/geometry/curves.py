@@ -48,9 +48,7 @@ def least_points(curve: str) -> int:
 
 
 def ends(curve: str) -> tuple[int, int]:
-    """Return which control points are start and target; the last of a `ferguson` curve is a
-    tangent.
-    """
+    """Return which control points are start and target; the last of `ferguson` is a tangent."""
     return (0, -2) if curve == "ferguson" else (0, -1)
 
 
@@ -191,8 +189,8 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
 
 
 def point_at(path: Path, at: float) -> np.ndarray:
-    """Return the point (2,) of a path at a piece's number plus the parameter in it, in the path's
-    unit.
+    """Return the point (2,) of a path, in its unit, at a piece's number plus the parameter in
+    it.
     """
     pieces = bezier_pieces(path)
     piece = min(int(at), len(pieces) - 1)
@@ -235,9 +233,7 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return curvature (n,) and speed (n,) of pieces[i] (n, degree + 1, 2) at the parameter
-    t[i].
-    """
+    """Return curvature (n,) and speed (n,) of pieces (n, degree + 1, 2) at one parameter each."""
     degree = pieces.shape[1] - 1
     first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
     second = np.zeros_like(first)

@@ -12,7 +12,7 @@ from bezierplan.geometry.samples import Samples
 
 
 def write_csv(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
-    """Write distance, x, y, heading and curvature of each sample, with nine digits, below a heading
+    """Write distance, x, y, heading and curvature of each sample, with nine digits, and a heading
     row.
     """
     np.savetxt(
@@ -51,8 +51,9 @@ def _convert_to_plain(value: Any) -> Any:
 
 
 def write_ros(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
-    """Write a `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion
-    about z.
+    """Write a `nav_msgs/Path` message as YAML.
+
+    A pose's orientation is the heading as a quaternion about z.
     """
     import yaml
 

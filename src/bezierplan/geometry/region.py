@@ -181,7 +181,7 @@ def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Return points (..., 2) in units, in the region's frame: on a grid, from its lower left
+    """Return points (..., 2), in units, in the region's frame: on a grid, from its lower left
     corner.
     """
     return points - region.origin if isinstance(region, GridRegion) else points

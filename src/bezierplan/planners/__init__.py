@@ -89,7 +89,7 @@ class Plan(NamedTuple):
         stop: str,
         extra: dict[str, float | bool] | None = None,
     ) -> "Plan":
-        """Build the plan of a planner that evaluates one path and considers it free, or that finds
+        """Build the plan of a planner that evaluates one path and considers it free, or finds
         none.
         """
         return cls(path, length, path is not None, 1, np.array([length]), stop, extra or {})

@@ -152,9 +152,7 @@ def _build_first_path(rng, occupied, start, target, rules):
 
 @compile_kernel
 def _append_next_point(rng, occupied, target, path, count, rules):
-    """Append, in place, the best point found to the first `count` of a path, and return its
-    cost.
-    """
+    """Append, in place, the best point found to the first `count` of a path; return its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
@@ -188,6 +186,7 @@ def _append_next_point(rng, occupied, target, path, count, rules):
                 i = onlooked[bee] if turn == 1 else bee
                 other = draw_integer(rng, 0, _SOURCES - 1)
                 other += other >= i
+                # A bee moves one coordinate only.
                 k = draw_integer(rng, 0, 2)
                 point[0], point[1] = x[i, 0], x[i, 1]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
@@ -238,9 +237,7 @@ def _measure_leg(x0, y0, x1, y1):
 
 @compile_kernel
 def _cut_short(occupied, path):
-    """Return a path without unnecessary points: each point is joined to the last one that it
-    sees.
-    """
+    """Return a path without unnecessary points: each is joined to the last one that it sees."""
     kept = np.zeros(len(path), dtype=np.int64)
     count = 1
     while kept[count - 1] < len(path) - 1:
@@ -325,9 +322,7 @@ def _copy(points, first, last, others, place):
 
 @allocation_free
 def _shift(rng, occupied, point, spread):
-    """Move a point by Gaussian steps, in place, no further than the centres of the outermost
-    cells.
-    """
+    """Move a point by Gaussian steps, in place, within the centres of the outermost cells."""
     for k in range(2):
         side = occupied.shape[1 - k]
         point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)

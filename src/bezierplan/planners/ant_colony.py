@@ -186,6 +186,7 @@ def _run_colony(rng, lattice, heuristic, rules):
                     rules.evaporation * rules.deposit / best_length,
                 )
         else:
+            # All trails evaporate before any ant lays a new one.
             for cell in range(cells):
                 for step in range(8):
                     trail[cell, step] *= 1.0 - rules.evaporation

@@ -105,8 +105,8 @@ def plan(
 def _choose_first_population(
     colony: ant_colony.Colony, population: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return paths (population, cells) and their sizes (population,): the best one, then the last
-    ants'.
+    """Return paths (population, cells) and their sizes: the best one, then the last ants' in
+    turn.
     """
     paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
     sizes = np.full(population, len(colony.best))

@@ -197,6 +197,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         _redraw(starts, codes, cells, sampled)
 
     best, history = _search(moves, codes, cells, sampled, rules)
+    # The search measures the clearance only if the fitness asks for it, the table has it always.
     _, bad, clearance = _measure(best, cells, sampled, np.empty((3, settings.samples)), True)
     points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
     return Plan(
@@ -272,6 +273,7 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
     free = np.flatnonzero(legal)
     if not len(free):
         raise ValueError("all cells are occupied; expected a free cell for the control points")
+    # No window is wider than the map.
     reach = min(reach, max(rows, columns))
     # A list for each cell: distances are then measured to a few cells, not to all occupied ones.
     around = np.lib.stride_tricks.sliding_window_view(
@@ -279,6 +281,7 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
     )
     row, column, up, right = np.nonzero(around)
     near = np.column_stack([column + right - reach, row + up - reach])
+    # The occupied cells around a cell follow each other, for `nonzero` goes cell by cell.
     at = columns * row + column
     return _Cells(
         grid.occupied,
@@ -346,8 +349,8 @@ def _search(rng, codes, cells, curve, rules):
 
 @compile_kernel
 def _redraw(rng, codes, cells, curve):
-    """Redraw every chromosome, in place, until its curve is collision-free, at most
-    `_FEASIBLE_TRIES` times.
+    """Redraw each chromosome, in place, until its curve is free, at most `_FEASIBLE_TRIES`
+    times.
     """
     scratch = np.empty((3, curve.ends.shape[1]))
     for i in range(len(codes)):
@@ -374,9 +377,7 @@ def _mutate(rng, genes, bits, cells, rules):
 
 @allocation_free
 def _compute_cost(genes, cells, curve, rules, scratch):
-    """Return the cost of a chromosome, the reciprocal of its fitness (`Settings` lists the
-    forms).
-    """
+    """Return a chromosome's cost, the reciprocal of its fitness (`Settings` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
     priced = length * (
         1.0 + rules.collision_factor * bad / curve.ends.shape[1]
@@ -403,8 +404,9 @@ def _compute_cost(genes, cells, curve, rules, scratch):
 
 @allocation_free
 def _compute_safety_term(bad, clearance, safety_distance):
-    """Return how far the path undercuts the safety distance: 0 to 1 (ma2020, eq. 14; 1 if it
-    collides).
+    """Return how far the path undercuts the safety distance, 0 to 1 (ma2020, eq. 14).
+
+    It is 1 for a path that collides.
     """
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
@@ -503,8 +505,9 @@ def _cuts_obstacle(x, y, x_end, y_end, occupied):
 
 @allocation_free
 def _measure_clearance(x, y, cells):
-    """Return the least distance in cells of samples to the occupied cells near theirs, or
-    infinity.
+    """Return the least distance, in cells, of samples to the occupied cells near theirs.
+
+    It is infinite if there are none.
     """
     rows, columns = cells.occupied.shape
     least = np.inf

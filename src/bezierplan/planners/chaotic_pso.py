@@ -278,6 +278,7 @@ def search(
         # Without free control points there is one path, the straight line.
         particles, iterations = 1, 0
     objective = _build_objective(problem, settings)
+    # All x first, then all y, as in a particle.
     low, high = np.repeat(
         np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1
     )

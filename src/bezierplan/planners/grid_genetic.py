@@ -79,6 +79,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     walls = np.pad(grid.occupied, 1, constant_values=True)
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    # An end on the upper or right border lies in the last cell; the frame shifts all by one.
     (start_column, target_column), (start_row, target_row) = (
         np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     )
@@ -112,9 +113,7 @@ def _is_turn(column: np.ndarray, row: np.ndarray) -> np.ndarray:
 
 
 def _join_through_centres(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Return points from start to target, which lie in the first and last cell, through cells'
-    centres.
-    """
+    """Join start and target, which lie in the first and last cell, through cells' centres."""
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
     first, last = (

@@ -154,6 +154,7 @@ def _search(rng, lattice, free, cells, rules):
     """
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
+    # A flipped bit may give a number that is no cell, so there is an entry for every number.
     legal = np.zeros(1 << bits, dtype=np.bool_)
     legal[free] = True
     parents = np.empty_like(cells)

@@ -378,6 +378,7 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
     for _ in range(rules.population // 2):
         one, other = _select_parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
+        # Without a crossover no cut is drawn.
         cut = draw_integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(2):

@@ -268,7 +268,7 @@ _NOTHING = _Outcome(
 
 
 def _list_inner_cells(cells: np.ndarray, start: int, target: int) -> np.ndarray:
-    """List the numbers of the cells marked in a bool array (rows, columns), without start and
+    """List the cells marked in a bool array (rows, columns), by number, without start and
     target.
     """
     numbers = np.flatnonzero(cells)
@@ -367,6 +367,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
+                # Cuts lie behind the start and before the target.
                 cut = other_cut = 1 + draw_below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
                     cut = 1 + draw_below(moves, lengths[mother] - 1)

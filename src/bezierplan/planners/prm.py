@@ -84,6 +84,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     neighbours = settings.neighbours if settings.links == Links.nearest else None
     drawn, way = 0, ()
+    # Later roadmaps take further numbers of the same generator.
     while drawn < settings.attempts and not len(way):
         length, way, roads = search_roadmap(
             problem, rng, settings.nodes, neighbours, settings.d_min
@@ -159,9 +160,7 @@ def _draw_free_points(
     high: np.ndarray,
     is_free: Callable[..., np.ndarray],
 ) -> np.ndarray:
-    """Draw points (nodes or fewer, 2), uniform in a field's free part; fewer if almost none is
-    free.
-    """
+    """Draw points (nodes, 2), uniform in a field's free part; fewer if almost none is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
@@ -218,8 +217,8 @@ def _list_pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray,
 def _is_visible(
     starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray
 ) -> np.ndarray:
-    """Tell which segments between two arrays of points (n, 2) enter no circle; they may touch
-    it.
+    """Tell which segments between two arrays of points (n, 2) enter no circle; touching is
+    allowed.
     """
     way = targets - starts
     # For a single point any share along it is valid.

@@ -114,7 +114,7 @@ def _is_blocked_in_grid(x, y, region):
 
 
 def _is_free_in_grid(points, region):
-    """Tell whether a hull is free: by its bounding box, or by its own direction as separating
+    """Tell whether a hull is free, by its bounding box or by its own direction as separating
     axis.
     """
     rows, columns = region.blocked.shape
@@ -358,9 +358,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 @allocation_free
 def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Return the smallest and largest distance of control points from an edge's line, positive
-    where free.
-    """
+    """Return the range of distances of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
     for x, y in points:

@@ -161,9 +161,7 @@ def _measure_clearance_of_point(
     centres: np.ndarray,
     radii: np.ndarray,
 ) -> float:
-    """Return the least distance of a point to some of the obstacles, by number: edges, then
-    discs.
-    """
+    """Return the least distance of a point to some obstacles, by number: edges, then discs."""
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)

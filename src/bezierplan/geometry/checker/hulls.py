@@ -115,9 +115,7 @@ def choose_direction(points: np.ndarray) -> tuple[float, float]:
 
 @allocation_free
 def measure_range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Return the smallest and the largest component of control points in a direction, relative to
-    the first.
-    """
+    """Return the range of control points' components along (x, y), relative to the first one."""
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y

@@ -182,9 +182,7 @@ def _build_matrix(graph: _Graph) -> "csr_array":
 
 @compile_kernel
 def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Tell which circles (n,) do not lie inside another; the first of equal circles counts as
-    outside.
-    """
+    """Tell which circles (n,) do not lie inside another; the first of equal circles does not."""
     outer = np.ones(len(radii), dtype=np.bool_)
     for i in range(len(radii)):
         for j in range(len(radii)):
@@ -347,8 +345,8 @@ def _shortest_between(ends: np.ndarray, lengths: np.ndarray) -> np.ndarray:
 
 
 def _find_covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the parts of a circle in other circles or outside the border: middle and half-width of
-    each.
+    """Return the parts of a circle in other circles or outside the border, by middle and
+    half-width.
     """
     centres, radii = scene.centres, scene.radii
     radius = radii[k]

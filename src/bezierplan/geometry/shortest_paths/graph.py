@@ -40,9 +40,7 @@ def move_bound(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
 
 
 def follow_nodes(points: np.ndarray, nodes: np.ndarray) -> Bound:
-    """Return the polyline along some of the points (n, 2), without repetitions; no path without
-    nodes.
-    """
+    """Return the polyline along some points (n, 2), without repetitions; no path without nodes."""
     if not len(nodes):
         return no_path()
     path = points[nodes]
@@ -83,9 +81,7 @@ def dijkstra_path(graph: "csr_array") -> np.ndarray:
 
 @compile_kernel
 def trace_back(before, length):
-    """Return the nodes from node 0 to 1, from each one's predecessor; empty if the length is
-    infinite.
-    """
+    """Return the nodes from 0 to 1, from each one's predecessor; none if the length is infinite."""
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])

@@ -123,9 +123,7 @@ def _list_grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _choose_lattice(points: np.ndarray, finest: int) -> int:
-    """Return the least lattice points per cell that make all coordinates integers; `finest` at
-    most.
-    """
+    """Return the least points per cell, `finest` at most, that make all coordinates integers."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(

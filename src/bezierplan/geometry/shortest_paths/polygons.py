@@ -147,8 +147,9 @@ def _is_apart(first: float, second: float) -> bool:
 
 @allocation_free
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
-    """Return the distance of a point from the line through a and b, positive on its left; 0 if a
-    equals b.
+    """Return the distance of a point from the line through a and b, positive on its left.
+
+    It is 0 if a equals b.
     """
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     if length == 0.0:

@@ -43,9 +43,7 @@ class Scene(NamedTuple):
 
 
 def build_scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
-    """Build the scene of occupied cells with a ring around them and corners as `grid` finds
-    them.
-    """
+    """Build the scene of occupied cells with a ring around them and corners found by `grid`."""
     row, begin, end = find_runs(cells).astype(np.int64).T
     runs = np.column_stack([begin, end]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
@@ -245,9 +243,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 @allocation_free
 def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
-    """Return the first run of a row that ends right of a grid line; every row ends with the
-    ring's.
-    """
+    """Return the first run of a row that ends right of a grid line; the ring's ends each row."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
         middle = (low + high) // 2

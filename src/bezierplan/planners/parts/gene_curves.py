@@ -97,6 +97,7 @@ def validate(
     pieces = _write_pieces(points, rules.curve, field.room, scratch)
     if pieces == 0:
         return np.inf
+    # Pieces of a chain are cubic, a single curve has all its points in each piece.
     size = 4 if pieces == len(points) - 3 else len(points)
     # Most collisions show up in this look at some samples; the walk over all cells comes last.
     sight, least = _look_at_curve(pieces, size, field.room, scratch)
@@ -127,6 +128,7 @@ def _write_pieces(points, curve, room, scratch):
         return len(points) - 3
     pieces = CUT if len(points) > HIGH else 1
     if pieces > 1:
+        # A look at a few points comes before the cut, which takes longer.
         x, y, ends = scratch.x, scratch.y, QUARTERS * pieces - 1
         write_samples(points, ends + 1, 1, 1, ends, x, y, scratch.t, scratch.power)
         for i in range(ends):

@@ -105,7 +105,7 @@ def build_polygon(ones: np.ndarray, field: Field) -> np.ndarray:
 
 @allocation_free
 def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray) -> int:
-    """Write the polygon of a chromosome (n,) to the first n + 2 of some points, and return their
+    """Write the polygon of a chromosome (n,) to the first n + 2 of some points; return their
     number.
     """
     count = len(ones)

@@ -52,6 +52,7 @@ def select(pool: Pool, survivors: int, fill: int) -> None:
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
     best, most = order[:survivors], pool.count.max()
+    # No list is longer than `most`, so the rest of the room need not be copied.
     pool.ones[:survivors, :most] = pool.ones[best, :most]
     pool.count[:survivors] = pool.count[best]
     pool.cost[:survivors] = pool.cost[best]

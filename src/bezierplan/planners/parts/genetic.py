@@ -128,17 +128,16 @@ def is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 @allocation_free
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
-    """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section
-    III-E: mutation).
+    """Complement, in place, one bit of a chromosome (song2016, Section III-E: mutation).
+
+    position: counted from its beginning.
     """
     chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)
 
 
 @allocation_free
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
-    """Replace, in place, one random gene of a chromosome by a random allele, which may equal the
-    old gene.
-    """
+    """Replace, in place, a random gene of a chromosome by a random allele, maybe the old one."""
     chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[draw_integer(rng, 0, len(alleles))]
 
 

@@ -125,9 +125,7 @@ def _move_to_best_neighbour(path, k, ground, rules, neighbours):
 
 @compile_inline
 def _compute_cost_through(path, k, cell, ground, penalty):
-    """Return the energy plus penalty of the two edges that node k would have if it were in the
-    given cell.
-    """
+    """Return the energy plus penalty of the two edges that node k would have in the given cell."""
     encounters = count_obstacles_on(ground, path[k - 1], cell) + count_obstacles_on(
         ground, cell, path[k + 1]
     )

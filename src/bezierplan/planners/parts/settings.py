@@ -195,7 +195,7 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
 
     def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(plan)
-        def planned(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
+        def call_by_name(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
             parts: list[dict[str, Any]] = [{} for _ in classes]
             for name, value in values.items():
                 parts[place.get(name, 0)][name] = value
@@ -204,6 +204,7 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
         # What asks for arguments or help sees the settings by name, too.
         signature = inspect.signature(plan)
         kept = list(signature.parameters.values())
+        # The tuples stand behind `problem` and `rng`.
         del kept[2 : 2 + len(classes)]
         names = {
             name: annotation
@@ -214,15 +215,15 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name])
             for name in names
         ]
-        planned.__signature__ = signature.replace(parameters=[*kept, *keywords])
+        call_by_name.__signature__ = signature.replace(parameters=[*kept, *keywords])
         told = [
             f"{name} : {each}\n    {each.meaning}"
             for part in classes
             for name, each in _list_declared(part).items()
         ]
-        planned.__doc__ = "\n".join(
+        call_by_name.__doc__ = "\n".join(
             [inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told]
         )
-        return planned
+        return call_by_name
 
     return decorate
