@@ -49,7 +49,7 @@ def test_first_values(name, expected):
 def test_lyapunov_exponents_are_the_known_ones(name, exponent):
     """How fast two sequences part that begin close to each other, as claim C46 measures it."""
     rng = np.random.default_rng(1)
-    found = [tharwat2018._exponent(rng, name, 1e-9, MU) for _ in range(20)]
+    found = [tharwat2018._estimate_exponent(rng, name, 1e-9, MU) for _ in range(20)]
     assert np.mean(found) == pytest.approx(exponent, abs=0.05)
 
 

@@ -474,7 +474,7 @@ def surface(monkeypatch, truth):
     fitness = np.hypot(x, y) + (0.2 * np.cos(20 * x) * np.cos(20 * y) if truth else 0.0)
     monkeypatch.setattr(
         tharwat2018,
-        "landscape",
+        "compute_landscape",
         lambda results: pd.DataFrame({"x": x, "y": y, "objective": fitness}),
     )
     rows = pd.DataFrame({"repeat": [0], "workspace": "equal", "profile": "default"})

@@ -35,11 +35,11 @@ def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
         free = (abs(x - y) / math.sqrt(2) > radius).all(axis=1)
         lengths = np.where(free, 150.0, 200.0)
         error = lengths.std() / math.sqrt(trials)
-        assert elhoseny2017.expected_length(100, radius, obstacles) == pytest.approx(
+        assert elhoseny2017.estimate_length(100, radius, obstacles) == pytest.approx(
             lengths.mean(), abs=4 * error
         )
-    assert elhoseny2017.expected_length(200, 0.025, 0) == 300
-    assert elhoseny2017.expected_length(200, 0.5, 1000) == pytest.approx(400)
+    assert elhoseny2017.estimate_length(200, 0.025, 0) == 300
+    assert elhoseny2017.estimate_length(200, 0.5, 1000) == pytest.approx(400)
 
 
 def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
@@ -48,9 +48,9 @@ def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
     )
     assert cell_length.length4(
         Path("polyline", np.array([[0.0, 0], [40, 40]])), empty
-    ) == elhoseny2017.expected_length(40, 0.025, 0)
+    ) == elhoseny2017.estimate_length(40, 0.025, 0)
     around = Path("polyline", np.array([[0.0, 0], [14.2, 23.7], [40, 40]]))
-    assert cell_length.length4(around, empty) == elhoseny2017.expected_length(40, 0.7, 1000) == 80
+    assert cell_length.length4(around, empty) == elhoseny2017.estimate_length(40, 0.7, 1000) == 80
 
 
 def test_one_radius_fits_both_fields_best():

@@ -11,8 +11,8 @@ from bezierplan.planners.fish_swarm_genetic import (
     _DEAD,
     _SWIMMING,
     Settings,
+    _collect_first_paths,
     _follow,
-    _place_first_paths,
 )
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.settings import fill_settings
@@ -81,7 +81,7 @@ def released(wanted=100, seed=0, **changes):
     problem = environment(1)
     places = build_grid_lattice(problem.workspace, problem.start, problem.target, "one")
     swarm = SWARM._replace(fish=20, population=wanted, **changes)
-    return places, *_place_first_paths(np.random.default_rng(seed), places, swarm)
+    return places, *_collect_first_paths(np.random.default_rng(seed), places, swarm)
 
 
 def test_fish_that_arrive_give_as_many_paths_as_wanted():

@@ -158,7 +158,7 @@ def test_signed_curvature_counts_left_turns_alone():
 
 def test_generation_by_which_a_share_of_the_improvement_is_made():
     runs = pd.DataFrame({"history": [np.array([110.0, 102, 101, 100]), np.array([5.0, 5])]})
-    assert song2016.first_generation_improved_by(0.9, runs, {}).tolist() == [2, 0]
+    assert song2016.find_generation_improved_by(0.9, runs, {}).tolist() == [2, 0]
 
 
 @pytest.mark.parametrize("ends", ["0_15", "15_255", "240_255", "0_240"])

@@ -280,8 +280,8 @@ def test_holm_against_a_worked_example():
     """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm
     1979).
     """
-    assert meledje.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx(
+    assert meledje.correct_by_holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx(
         [0.03, 0.06, 0.06, 0.02]
     )
-    assert meledje.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
-    assert len(meledje.holm(np.array([]))) == 0
+    assert meledje.correct_by_holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
+    assert len(meledje.correct_by_holm(np.array([]))) == 0

@@ -12,7 +12,7 @@ from fields import assert_path_fits, drawn
 from studies import planned, study
 
 from bezierplan.geometry import cell_length, curves
-from bezierplan.papers.elhoseny2017.functions import q
+from bezierplan.papers.elhoseny2017.functions import compute_q
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import gene_curves, gene_lattice
 from bezierplan.planners.parts.settings import fill_settings
@@ -287,7 +287,7 @@ def test_children_that_are_not_crossed_mutate_as_well():
 
 def test_q_statistic():
     def of(*texts):
-        return q(*(np.array(list(text), dtype=int) for text in texts))
+        return compute_q(*(np.array(list(text), dtype=int) for text in texts))
 
     assert of("1100", "1100") == 1.0
     assert of("1100", "0011") == -1.0

@@ -34,7 +34,7 @@ PROBLEM = {
 def maps(count, description=MAP, problem=PROBLEM, name="study/blocks"):
     return [
         grid.occupied
-        for grid in itertools.islice(random_blocks.candidates(description, problem, name), count)
+        for grid in itertools.islice(random_blocks.draw_maps(description, problem, name), count)
     ]
 
 
@@ -94,7 +94,7 @@ def test_maps_are_drawn_until_their_shortest_lattice_path_has_the_wanted_length(
 
 def test_without_a_wanted_length_the_first_map_with_a_path_is_taken():
     assert np.array_equal(
-        built(1)[0], next(iter(random_blocks.candidates(MAP, PROBLEM, "study/blocks"))).occupied
+        built(1)[0], next(iter(random_blocks.draw_maps(MAP, PROBLEM, "study/blocks"))).occupied
     )
 
 

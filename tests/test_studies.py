@@ -97,7 +97,7 @@ FIXED = {
 def test_fitness(name, world, column):
     x, y, *_ = FIXED[name]
     path = np.array([[(0, 0), *zip(x, y), (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, WORLDS[world], SAMPLES, BETA)[0] == pytest.approx(
+    assert tharwat2018.compute_fitness(path, WORLDS[world], SAMPLES, BETA)[0] == pytest.approx(
         FIXED[name][column], abs=2e-6
     )
 
@@ -110,7 +110,7 @@ def test_fitness_is_that_of_the_planner():
             np.random.default_rng(seed),
             **settings | {"particles": 5, "iterations": 2},
         )
-        assert tharwat2018.fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[
+        assert tharwat2018.compute_fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[
             0
         ] == pytest.approx(plan.objective, rel=1e-12)
 
@@ -118,19 +118,21 @@ def test_fitness_is_that_of_the_planner():
 def test_best_known_curve():
     path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN, (4, 6)]], dtype=float)
     # Its coordinates are rounded.
-    assert tharwat2018.fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
+    assert tharwat2018.compute_fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
         9.3436, abs=3e-4
     )
 
 
 def test_local_minima():
     bowl = np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)
-    assert np.argwhere(tharwat2018.local_minima(bowl)).tolist() == [[4, 3]]
+    assert np.argwhere(tharwat2018.find_local_minima(bowl)).tolist() == [[4, 3]]
     assert (
-        tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)).sum()
+        tharwat2018.find_local_minima(
+            -np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)
+        ).sum()
         == 4
     )
-    assert not tharwat2018.local_minima(np.zeros((5, 5))).any(), "not strict"
+    assert not tharwat2018.find_local_minima(np.zeros((5, 5))).any(), "not strict"
 
 
 def test_nodes_of_one_valley_are_one_minimum():
@@ -139,12 +141,12 @@ def test_nodes_of_one_valley_are_one_minimum():
     """
     x, y = np.meshgrid(np.linspace(-1, 1, 81), np.linspace(-1, 1, 81), indexing="ij")
     valley = 10 + np.abs(y - 0.37 * x) + 0.01 * x**2
-    assert tharwat2018.local_minima(valley).sum() > 1
-    assert np.abs(np.argwhere(tharwat2018.valleys(valley)) - 40).max() <= 1
-    assert tharwat2018.valleys(valley).sum() == 1
+    assert tharwat2018.find_local_minima(valley).sum() > 1
+    assert np.abs(np.argwhere(tharwat2018.find_valleys(valley)) - 40).max() <= 1
+    assert tharwat2018.find_valleys(valley).sum() == 1
     wells = 10 + np.minimum((x - 0.5) ** 2, 0.1 + (x + 0.5) ** 2) + y**2
-    assert np.argwhere(tharwat2018.valleys(wells)).tolist() == [[20, 40], [60, 40]]
-    assert not tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), (
+    assert np.argwhere(tharwat2018.find_valleys(wells)).tolist() == [[20, 40], [60, 40]]
+    assert not tharwat2018.find_local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), (
         "at the edge"
     )
 
@@ -177,17 +179,17 @@ def test_landscape():
         ]
     )
     found = Results(runs, {"equal": problem("equal")}, pd.DataFrame())
-    surface = tharwat2018.landscape(found)
+    surface = tharwat2018.compute_landscape(found)
     side = tharwat2018.GRID
     assert len(surface) == side**2
     values = surface["objective"].to_numpy().reshape(side, side)
     assert values.min() >= math.dist((0, 0), (4, 6))
-    assert tharwat2018.local_minima(values).sum() == 1
+    assert tharwat2018.find_local_minima(values).sum() == 1
     place = surface.iloc[[17 * side + 150]]
     points = np.array(tharwat2018.BEST_KNOWN)
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
     path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
+    assert tharwat2018.compute_fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
         place["objective"].iloc[0], rel=1e-12
     )
     check = on_maps({"workspace": "equal"})
@@ -202,7 +204,7 @@ def test_landscape():
         "fixed": 2,
     }
     shown = drawn[drawn["part"] == "minimum"].set_index(["x", "y"]).index
-    lowest = surface[tharwat2018.local_minima(values).ravel()].set_index(["x", "y"]).index
+    lowest = surface[tharwat2018.find_local_minima(values).ravel()].set_index(["x", "y"]).index
     assert shown.isin(lowest).all()
     assert drawn.loc[drawn["part"] == "lowest", "objective"].item() == values.min()
 
@@ -211,7 +213,7 @@ def test_landscape():
 def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     side = np.linspace(-10, 10, tharwat2018.GRID)
     values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
-    monkeypatch.setattr(tharwat2018, "landscape", lambda *given: surface_of(values))
+    monkeypatch.setattr(tharwat2018, "compute_landscape", lambda *given: surface_of(values))
     runs = pd.DataFrame(
         [
             {

@@ -20,8 +20,10 @@ K = TypeVar("K", bound=Callable[..., Any])
 
 
 def _compile_kernel(function: K, **options: Any) -> K:
-    """A function with the options of all kernels and some more, kept in this package's own cache;
-    itself where numba compiles nothing.
+    """Compile a function with the options of all kernels and some more, kept in this package's own
+    cache.
+
+    Where numba compiles nothing, return the function itself.
     """
     if config.DISABLE_JIT:
         return function
@@ -31,13 +33,12 @@ def _compile_kernel(function: K, **options: Any) -> K:
 
 
 def compile_kernel(kernel: K) -> K:
-    """`njit` with the options of all kernels."""
+    """Compile a function by `njit` with the options of all kernels."""
     return _compile_kernel(kernel)
 
 
 def allocation_free(kernel: K) -> K:
-    """`compile_kernel` for a kernel that creates no array or list, returns none, and calls only
-    kernels like it.
+    """Compile a kernel that creates no array or list, returns none, and calls only kernels like it.
 
     Otherwise numba counts the references to every array that is passed to a kernel, with
     instructions that lock memory: in small kernels that takes most of the time, and much of the
@@ -49,5 +50,5 @@ def allocation_free(kernel: K) -> K:
 
 
 def compile_inline(kernel: K) -> K:
-    """A kernel that is compiled as part of each of its callers, and kept with them."""
+    """Compile a kernel as part of each of its callers, and keep it with them."""
     return njit(inline="always")(kernel)

@@ -12,7 +12,10 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 @allocation_free
 def _compute_speed(differences: np.ndarray, t: float) -> float:
-    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule."""
+    """Return |B'(t)| of a piece by Horner's rule.
+
+    differences: (degree, 2), of its control points.
+    """
     n = len(differences) - 1
     s = 1.0 - t
     first = s if n else 1.0
@@ -35,8 +38,9 @@ def _compute_speed(differences: np.ndarray, t: float) -> float:
 def _integrate_speed(
     differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray
 ) -> float:
-    """Gauss-Legendre quadrature of the speed between two parameters; nodes, weights: (n,), on -1 to
-    1.
+    """Integrate the speed between two parameters by Gauss-Legendre quadrature.
+
+    nodes, weights: (n,), on -1 to 1.
     """
     total = 0.0
     for node, weight in zip(nodes, weights):
@@ -46,11 +50,10 @@ def _integrate_speed(
 
 @compile_kernel
 def measure_piece(piece: np.ndarray) -> float:
-    """Arc length of one Bézier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive
-    Gauss-Legendre quadrature of its speed.
+    """Return the arc length of one Bézier piece (degree + 1, 2), in its unit, to a relative 1e-10.
 
-    Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only
-    about twenty halvings.
+    Its speed is integrated by adaptive Gauss-Legendre quadrature. Orders 8 and 16 are compared on
+    each interval, which is halved if they differ; a cusp costs only about twenty halvings.
     """
     if len(piece) == 2:
         return math.hypot(piece[1, 0] - piece[0, 0], piece[1, 1] - piece[0, 1])
@@ -64,6 +67,8 @@ def measure_piece(piece: np.ndarray) -> float:
         low, high = stack.pop()
         coarse = _integrate_speed(differences, low, high, _NODES_8, _WEIGHTS_8)
         fine = _integrate_speed(differences, low, high, _NODES_16, _WEIGHTS_16)
+        # A tenth of the promised error, in proportion to the interval; short ones, as at a cusp,
+        # may err more, and the last halving ends there.
         if abs(coarse - fine) <= 1e-11 * scale * max(high - low, 1e-4) or high - low < 1e-12:
             total += fine
         else:

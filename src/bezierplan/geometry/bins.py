@@ -1,6 +1,4 @@
-"""Edges by place: a raster of square bins, so that a segment is compared with what is near it and
-not with all.
-"""
+"""Edges by place: a raster of square bins, so that a segment is compared with near edges only."""
 
 import math
 from typing import NamedTuple
@@ -16,9 +14,11 @@ _LEAST_SIDE = 1e-4
 class Bins(NamedTuple):
     """Edges by the bins that they pass through.
 
-    low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of
-    bins. first: (columns rows + 1,) where the members of each bin, column by column, begin in
-    `members`.
+    low: (2,) the lower left corner of all bins.
+    side: side of a bin, in units.
+    columns, rows: number of bins.
+    first: (columns rows + 1,) where the members of each bin, column by column, begin in `members`.
+    members: numbers of edges.
     """
 
     low: np.ndarray
@@ -30,10 +30,11 @@ class Bins(NamedTuple):
 
 
 def sort_into_bins(edges: np.ndarray) -> Bins:
-    """The bins of edges (n, 4), about as many as there are edges."""
+    """Sort edges (n, 4) into bins, about as many as there are edges."""
     ends = edges.reshape(-1, 2) if len(edges) else np.zeros((1, 2))
     low = ends.min(axis=0)
     width, height = (ends.max(axis=0) - low).tolist()
+    # As many squares of this side as there are edges fill their box.
     side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
     empty = np.zeros(0, dtype=np.int64)
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
@@ -43,7 +44,8 @@ def sort_into_bins(edges: np.ndarray) -> Bins:
 
 @compile_kernel
 def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
-    """The numbers of the edges of each bin, ascending."""
+    """Return where the members of each bin begin, and the numbers of its edges, ascending."""
+    # A first entry tells the compiler the type of the lists; it is dropped below.
     places, passing = [0], [0]
     for e in range(len(edges)):
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
@@ -60,7 +62,7 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
 
 @allocation_free
 def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
-    """The first and the last column of bins between two abscissas."""
+    """Return the first and the last column of bins between two abscissas."""
     begin = int((min(x, other) - bins.low[0]) // bins.side)
     end = int((max(x, other) - bins.low[0]) // bins.side)
     return max(begin, 0), min(end, bins.columns - 1)
@@ -68,7 +70,7 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
 
 @allocation_free
 def rows_near(low: float, high: float, bins: Bins) -> tuple[int, int]:
-    """The first and the last row of bins between two ordinates, the smaller one first."""
+    """Return the first and the last row of bins between two ordinates, the smaller one first."""
     begin = int((low - bins.low[1]) // bins.side)
     end = int((high - bins.low[1]) // bins.side)
     return max(begin, 0), min(end, bins.rows - 1)
@@ -76,10 +78,11 @@ def rows_near(low: float, high: float, bins: Bins) -> tuple[int, int]:
 
 @allocation_free
 def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
-    """The first and the last row of bins that a segment passes within a column, a little more
-    rather than less.
+    """Return the first and the last row of bins that a segment passes within a column, a little
+    more rather than less.
     """
     low, high = min(a[1], b[1]), max(a[1], b[1])
+    # Rounding of the crossings stays far below this.
     margin = 1e-3 * bins.side
     step = b[0] - a[0]
     if abs(step) > margin:

@@ -66,8 +66,10 @@ def count_parts(points: np.ndarray) -> int:
 
 @allocation_free
 def cut(pieces: np.ndarray, points: int) -> None:
-    """Cut a Bézier piece of so many control points, the first of some (2**k, points or more, 2),
-    into all of them, of equal length in its parameter, in place (de Casteljau).
+    """Cut a Bézier piece into parts of equal length in its parameter, in place (de Casteljau).
+
+    pieces: (2**k, points or more, 2); the first holds the piece, of `points` control points, and
+        all of them hold the parts in the end.
     """
     step = len(pieces) // 2
     while step > 0:
@@ -83,7 +85,7 @@ def cut(pieces: np.ndarray, points: int) -> None:
 
 
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last, ..., 1."""
+    """Return x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, ..., 1."""
     x, y, t, power = np.empty((4, last + 1))
     write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
@@ -91,8 +93,9 @@ def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
 
 def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
-    degree + 1, 2). A piece of high degree is cut, for its polygon zigzags too much to tell how fast
-    it is.
+    degree + 1, 2).
+
+    A piece of high degree is cut, for its polygon zigzags too much to tell how fast it is.
     """
     points = curve.shape[1]
     xs, ys = [], []
@@ -157,7 +160,9 @@ def write_samples(
 
 @allocation_free
 def _find_cell(coordinate: float, before: int) -> int:
-    """Column or row of a coordinate; next to a grid line, that of the previous sample if close."""
+    """Return the column or row of a coordinate; near a grid line, the previous sample's if
+    close.
+    """
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
         return before
@@ -165,10 +170,10 @@ def _find_cell(coordinate: float, before: int) -> int:
 
 
 def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are
-    less than a cell apart.
+    """List the columns and rows of the cells that a polyline touches, in order.
 
-    A step is diagonal only where the polyline passes through a corner of cells.
+    Consecutive vertices are less than a cell apart. A step is diagonal only where the polyline
+    passes through a corner of cells.
     """
     columns, rows = np.empty((2, 2 * len(x)), dtype=np.int64)
     count = write_touched_cells(x, y, columns, rows)
@@ -177,7 +182,7 @@ def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @allocation_free
 def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> int:
-    """Write the `list_touched_cells` of a polyline (n,), at most 2 n; returns their number."""
+    """Write the `list_touched_cells` of a polyline (n,), at most 2 n, and return their number."""
     column, row = math.floor(x[0]), math.floor(y[0])
     columns[0], rows[0] = column, row
     count = 1
@@ -188,6 +193,7 @@ def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows:
         if next_column != column and next_row != row:
             to_x = (max(column, next_column) - x[s - 1]) / (x[s] - x[s - 1])
             to_y = (max(row, next_row) - y[s - 1]) / (y[s] - y[s - 1])
+            # The cell between: the line that is crossed first tells which.
             if abs(to_x - to_y) >= _IN_CORNER:
                 columns[count] = next_column if to_x < to_y else column
                 rows[count] = row if to_x < to_y else next_row
@@ -200,8 +206,8 @@ def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows:
 
 @allocation_free
 def count_occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
-    """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool
-    (rows, columns).
+    """Count the cells of a sequence that are occupied, bool (rows, columns), or outside the
+    grid.
     """
     count = 0
     for i in range(len(columns)):
@@ -212,7 +218,8 @@ def count_occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.nda
 
 @allocation_free
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether all cells that a straight leg touches are free; cells outside the grid are not free.
+    """Tell whether all cells that a straight leg touches are free; cells outside the grid are not
+    free.
 
     These are the cells of `list_touched_cells`, found without samples: from grid line to grid line.
     A leg counts as passing through a corner if it comes so close that no sample could tell the
@@ -252,7 +259,7 @@ def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float
 
 @allocation_free
 def _last_cell(first: float, last: float) -> int:
-    """Column or row in which a leg ends; the previous one if it ends on a grid line."""
+    """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
     return min(math.floor(first), math.floor(last + _ON_LINE))
@@ -260,7 +267,7 @@ def _last_cell(first: float, last: float) -> int:
 
 @allocation_free
 def measure_cells4(columns: np.ndarray, rows: np.ndarray) -> float:
-    """Length of a sequence of cells, each a neighbour of the one before."""
+    """Return the length of a sequence of cells, each a neighbour of the one before."""
     length = 0.0
     for i in range(1, len(columns)):
         diagonal = columns[i] != columns[i - 1] and rows[i] != rows[i - 1]
@@ -270,8 +277,8 @@ def measure_cells4(columns: np.ndarray, rows: np.ndarray) -> float:
 
 @allocation_free
 def measure_cells8(columns: np.ndarray, rows: np.ndarray) -> float:
-    """Length of a sequence of cells in which two straight steps that form a diagonal one are
-    replaced by it, from the beginning onwards.
+    """Return the length of a sequence of cells in which a diagonal step replaces two straight ones
+    that form it, from the beginning onwards.
     """
     length = 0.0
     i = 0
@@ -294,7 +301,10 @@ def measure_cells8(columns: np.ndarray, rows: np.ndarray) -> float:
 
 @allocation_free
 def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
-    """Length of a polyline. steps: scratch, at least as many numbers as in a block or as steps."""
+    """Return the length of a polyline.
+
+    steps: scratch, at least as many numbers as in a block or as steps.
+    """
     # Square roots and their sum are computed in two loops, so that the first can use vector
     # instructions, and the order of the sum stays as written; by blocks, so that a processor takes
     # the roots of one block while it still adds those of the one before.
@@ -311,13 +321,15 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 
 def sample_in_cells(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of samples of a path, in cells, less than a cell apart."""
+    """Return x and y of samples of a path, in cells, less than a cell apart."""
     return walk(grid.in_cells(curves.bezier_pieces(path)))
 
 
 def length_by_points(path: Path, grid: Grid) -> float:
-    """Return the length of a path, in units, that counts points of equal distance along it, at most
-    a cell apart: a step from the cell of one to a neighbouring cell counts 1, a diagonal one 1.5.
+    """Return the length of a path, in units, by counting points along it: a step from the cell of
+    one to a neighbouring cell counts 1, a diagonal one 1.5.
+
+    The points have equal distances, at most a cell.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["....", "...."], cell=1.0, unit="m")
@@ -336,7 +348,7 @@ def length_by_points(path: Path, grid: Grid) -> float:
 
 
 def length4(path: Path, grid: Grid) -> float:
-    """`measure_cells4` of a path, in units.
+    """Return the length of a path, in units, by the cells that it touches (`measure_cells4`).
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
@@ -347,8 +359,10 @@ def length4(path: Path, grid: Grid) -> float:
 
 
 def length8(path: Path, grid: Grid) -> float:
-    """`measure_cells8` of a path, in units. A path that runs from centre to centre of
-    neighbouring cells is measured on exactly these cells.
+    """Return the length of a path, in units, by the cells that it touches without corner cells
+    (`measure_cells8`).
+
+    A path that runs from centre to centre of neighbouring cells is measured on exactly these cells.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
@@ -362,7 +376,7 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Whether a path is a polyline through centres of cells along rows, columns and diagonals."""
+    """Tell whether a path leads through centres of cells along rows, columns and diagonals."""
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

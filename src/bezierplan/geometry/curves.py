@@ -37,20 +37,24 @@ STANDSTILL = 1e-3
 
 
 def least_points(curve: str) -> int:
-    """Minimum number of control points of a curve kind, including start and target."""
+    """Return the least number of control points of a curve kind, including start and target.
+
+    >>> least_points("piecewise_cubic"), least_points("ferguson")
+    (4, 4)
+    """
     if curve in ("ferguson", "cubic_chain"):
         return 4
     return max(2, (_DEGREE.get(curve) or 1) + 1)
 
 
 def ends(curve: str) -> tuple[int, int]:
-    """Which control points are start and target; the last of a `ferguson` curve is a tangent."""
+    """Return which control points are start and target; the last of `ferguson` is a tangent."""
     return (0, -2) if curve == "ferguson" else (0, -1)
 
 
 def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
-    """Weights (degree + 1,) of the control points span - degree .. span in a spline's blossom at
-    `degree` arguments.
+    """Return the weights (degree + 1,) of the control points span - degree .. span in a spline's
+    blossom at `degree` arguments.
     """
     degree = len(arguments)
     rows = np.eye(degree + 1)
@@ -65,7 +69,8 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 
 @cache
 def piece_matrix(curve: str, points: int) -> np.ndarray:
-    """The linear map from control points to Bézier pieces: (pieces, degree + 1, points). Read-only.
+    """Return the linear map from control points to Bézier pieces: (pieces, degree + 1, points).
+    Read-only.
 
     Raises ValueError for an unknown kind, for too few control points, for an odd number of control
     points of a `ferguson` curve, and for a number other than 3 k + 1 of a `cubic_chain`.
@@ -93,6 +98,7 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 
 
 def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
+    """Return the pieces (pieces, degree + 1, points) of a clamped uniform B-spline."""
     pieces = points - degree
     knots = np.concatenate(
         [np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))]
@@ -108,6 +114,7 @@ def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
 
 
 def _spline_pieces(points: int) -> np.ndarray:
+    """Return the pieces (points - 1, 4, points) of the cubic spline through all points."""
     from scipy.interpolate import CubicSpline
 
     # With two or three points these are the line or the parabola through them.
@@ -117,13 +124,14 @@ def _spline_pieces(points: int) -> np.ndarray:
 
 
 def _index_chain(points: int, degree: int) -> np.ndarray:
-    """Indices of the control points of each piece of a chain: (pieces, degree + 1)."""
+    """Return the indices of the control points of each piece of a chain: (pieces, degree + 1)."""
     return np.arange(0, points - 1, degree)[:, None] + np.arange(degree + 1)
 
 
 def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) there, with
-    respect to the parameter of a piece.
+    """Return cubic pieces between consecutive values (n, points) with the slopes (n, points) there.
+
+    Slopes are with respect to the parameter of a piece.
     """
     return np.stack(
         [values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]],
@@ -132,8 +140,8 @@ def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bézier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where
-    the previous one ends.
+    """Return the path as Bézier pieces (pieces, degree + 1, 2), in its unit, each piece beginning
+    where the previous one ends.
 
     A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
 
@@ -149,8 +157,8 @@ def bezier_pieces(path: Path) -> np.ndarray:
 
 
 def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
-    """Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016, eq. 2;
-    tharwat2018, eq. 2).
+    """Return the Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016,
+    eq. 2; tharwat2018, eq. 2).
     """
     k = np.arange(degree + 1)
     binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
@@ -158,8 +166,8 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
 
 
 def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Piece (samples,) and parameter within it (samples,) for parameters that are uniform over a
-    whole curve, both ends included.
+    """Return the piece (samples,) and the parameter within it (samples,) of samples that are
+    uniform over a whole curve, both ends included.
 
     Joints are hit exactly: the parameters are quotients of integers.
     """
@@ -170,8 +178,8 @@ def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray
 
 @cache
 def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
-    """The linear map from control points to samples, uniform in the parameter over the whole curve:
-    (samples, points). Read-only.
+    """Return the linear map from control points to samples, uniform in the parameter over the whole
+    curve: (samples, points). Read-only.
     """
     matrix = piece_matrix(curve, points)
     piece, t = sample_parameters(len(matrix), samples)
@@ -181,14 +189,16 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
 
 
 def point_at(path: Path, at: float) -> np.ndarray:
-    """The point (2,) of a path at a piece's number plus the parameter in it, in the path's unit."""
+    """Return the point (2,) of a path, in its unit, at a piece's number plus the parameter in
+    it.
+    """
     pieces = bezier_pieces(path)
     piece = min(int(at), len(pieces) - 1)
     return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
 
 
 def length(path: Path) -> float:
-    """Exact arc length of a path in its unit (relative error below 1e-10).
+    """Return the exact arc length of a path in its unit (relative error below 1e-10).
 
     >>> length(Path("polyline", np.array([[0.0, 0.0], [3.0, 4.0]])))
     5.0
@@ -203,7 +213,7 @@ def length(path: Path) -> float:
 
 
 def length_of(pieces: np.ndarray) -> float:
-    """`length` of a path, from its Bézier pieces (pieces, degree + 1, 2)."""
+    """Return the `length` of a path from its Bézier pieces (pieces, degree + 1, 2)."""
 
     from bezierplan.geometry.arc_length import measure_piece
 
@@ -211,8 +221,8 @@ def length_of(pieces: np.ndarray) -> float:
 
 
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the speeds
-    (samples,) at the same parameters.
+    """Return the curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the
+    speeds (samples,) at the same parameters.
 
     The value is nan where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over
     the control points in the second derivative; the formula needs the points themselves.
@@ -223,7 +233,7 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (n,) and speed (n,) of pieces[i] (n, degree + 1, 2) at the parameter t[i]."""
+    """Return curvature (n,) and speed (n,) of pieces (n, degree + 1, 2) at one parameter each."""
     degree = pieces.shape[1] - 1
     first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
     second = np.zeros_like(first)
@@ -242,8 +252,8 @@ def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def curvature_jump(path: Path) -> float:
-    """Largest jump in curvature across the joints of a path, in 1/unit, from the end values of the
-    pieces.
+    """Return the largest jump in curvature across the joints of a path, in 1/unit, from the end
+    values of the pieces.
 
     Joints where either side stands still are left out; 0 if there are no joints, infinite where the
     tangent turns.
@@ -259,6 +269,7 @@ def curvature_jump(path: Path) -> float:
     arriving = pieces[:-1, -1] - pieces[:-1, -2]
     cross = polygons.cross(leaving, arriving)
     along = (leaving * arriving).sum(axis=1)
+    # Joints of smooth curves turn by rounding errors only.
     turns = moving & ((along <= 0) | (np.abs(cross) > 1e-9 * np.abs(along)))
     if turns.any():
         return math.inf

@@ -12,8 +12,8 @@ from bezierplan.geometry.samples import Samples
 
 
 def write_csv(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
-    """A heading row, then distance, x, y, heading and curvature of each sample, with nine
-    digits.
+    """Write distance, x, y, heading and curvature of each sample, with nine digits, and a heading
+    row.
     """
     np.savetxt(
         file,
@@ -26,18 +26,19 @@ def write_csv(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
 
 
 def write_geojson(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
-    """A feature of kind LineString, with the verdict among its properties."""
+    """Write a feature of kind LineString, with the verdict among its properties."""
     properties = {name: values[name] for name in ("feasible", "length", "clearance")}
     line = {"type": "LineString", "coordinates": np.column_stack([samples.x, samples.y]).tolist()}
     write_json(file, {"type": "Feature", "properties": properties, "geometry": line})
 
 
 def write_json(file: Path, values: Mapping[str, Any]) -> None:
-    """Values as JSON; nan and infinity, which it does not know, become null."""
+    """Write values as JSON; nan and infinity, which it does not know, become null."""
     file.write_text(json.dumps(_convert_to_plain(values)) + "\n", encoding="utf-8")
 
 
 def _convert_to_plain(value: Any) -> Any:
+    """Convert a value, and all within it, to what JSON knows."""
     if isinstance(value, Mapping):
         return {name: _convert_to_plain(each) for name, each in value.items()}
     if hasattr(value, "_asdict"):
@@ -50,8 +51,9 @@ def _convert_to_plain(value: Any) -> Any:
 
 
 def write_ros(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
-    """A `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion about
-    z.
+    """Write a `nav_msgs/Path` message as YAML.
+
+    A pose's orientation is the heading as a quaternion about z.
     """
     import yaml
 

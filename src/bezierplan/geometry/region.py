@@ -115,7 +115,8 @@ Region = GridRegion | CircleRegion | PolygonRegion
 # Few: that of a map of 4,000 x 4,000 cells takes half a gigabyte.
 @lru_cache(maxsize=4)
 def build_region(workspace: Workspace) -> Region:
-    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons.
+    """Build the blocked region of a workspace; cells drawn from polygons have the region of the
+    polygons.
 
     Parameters
     ----------
@@ -125,7 +126,7 @@ def build_region(workspace: Workspace) -> Region:
     Returns
     -------
     GridRegion, CircleRegion or PolygonRegion
-        It shares no memory with the workspace. Those of the last maps are remembered.
+        It shares no memory with the workspace. Regions of the last maps are remembered.
     """
     if isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
         return _build_polygon_region(workspace.shapes)
@@ -137,8 +138,9 @@ def build_region(workspace: Workspace) -> Region:
 
 
 def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
-    """Whether a point lies in the blocked region. Meant for single points: it needs no compiled
-    code.
+    """Tell whether a point lies in the blocked region.
+
+    Meant for single points: it needs no compiled code.
 
     Parameters
     ----------
@@ -179,13 +181,15 @@ def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Points (..., 2) in units, in the region's frame: on a grid, from its lower left corner."""
+    """Return points (..., 2), in units, in the region's frame: on a grid, from its lower left
+    corner.
+    """
     return points - region.origin if isinstance(region, GridRegion) else points
 
 
 def _element(coordinate: float, tolerance: float) -> int:
-    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one,
-    otherwise of a cell.
+    """Return the index in the doubled grid of a coordinate in cells: the grid line's if it lies on
+    one, otherwise the cell's.
     """
     line = round(coordinate)
     return (
@@ -194,16 +198,14 @@ def _element(coordinate: float, tolerance: float) -> int:
 
 
 def border_edges(bounds: Bounds) -> np.ndarray:
-    """The four edges (4, 4) of a border, as x, y, x, y."""
+    """Return the four edges (4, 4) of a border, as x, y, x, y."""
     left, right, bottom, top = bounds
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
     return np.hstack([corners, np.roll(corners, -1, axis=0)])
 
 
 def add_wall(occupied: np.ndarray) -> np.ndarray:
-    """Occupied cells with a ring of occupied cells around them that represents the outside: bool
-    (rows + 2, columns + 2).
-    """
+    """Add a ring of occupied cells, which represents the outside: bool (rows + 2, columns + 2)."""
     return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
 
 
@@ -218,11 +220,13 @@ def find_occupied_around(cells: np.ndarray) -> np.ndarray:
 
 
 def _build_grid_region(grid: Grid) -> GridRegion:
+    """Build the region of cells, as elements of the doubled grid."""
     from bezierplan.geometry.bins import sort_into_bins
 
     cells = add_wall(grid.occupied)
     blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), dtype=bool)
     blocked[::2, ::2] = cells
+    # A line or vertex is blocked only if all cells beside it are: a path may run along a wall.
     blocked[1::2, ::2] = cells[:-1] & cells[1:]
     blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
     blocked[1::2, 1::2] = find_occupied_around(cells).all(axis=0)
@@ -244,8 +248,9 @@ def _build_grid_region(grid: Grid) -> GridRegion:
 
 
 def find_runs(boundary: np.ndarray) -> np.ndarray:
-    """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column
-    after the last.
+    """Find maximal runs of true values in the rows of a bool array.
+
+    Returns (n, 3): row, first column, column after the last.
     """
     around = np.pad(boundary, ((0, 0), (1, 1)))
     # Where a run begins and ends, in turn.
@@ -254,6 +259,7 @@ def find_runs(boundary: np.ndarray) -> np.ndarray:
 
 
 def _build_circle_region(circles: Circles) -> CircleRegion:
+    """Build the region of discs and of the outside of the border."""
     from bezierplan.geometry.bins import sort_into_bins
 
     edges = border_edges(circles.bounds)
@@ -268,6 +274,7 @@ def _build_circle_region(circles: Circles) -> CircleRegion:
 
 
 def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
+    """Build the region of polygons and of the outside of the border, by its boundary."""
     from bezierplan.geometry.bins import sort_into_bins
 
     cornered = [_list_corners(ring) for ring in list_rings(polygons.free())]
@@ -280,6 +287,7 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
     preceding = np.argsort(following)
     end = begin[following]
     direction = normalise(end - begin)
+    # To the left of an edge, where free space is.
     normals = np.column_stack([-direction[:, 1], direction[:, 0]])
     convex = cross(direction, direction[following]) < 0
     edges = np.hstack([begin, end])
@@ -287,7 +295,7 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
 
 
 def _list_corners(ring: np.ndarray) -> np.ndarray:
-    """A ring (n, 2) without repeated and collinear vertices."""
+    """Return a ring (n, 2) without repeated and collinear vertices."""
     ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
     arriving = normalise(ring - np.roll(ring, 1, axis=0))
     leaving = normalise(np.roll(ring, -1, axis=0) - ring)

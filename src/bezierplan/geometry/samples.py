@@ -19,9 +19,11 @@ _NEWTON_STEPS = 4
 class Samples(NamedTuple):
     """Points along a path, each field (n,).
 
-    distance: along the path from its start, in the path's unit. x, y: in that unit. heading:
-    direction of travel, in radians from the x-axis. curvature: signed, positive to the left, in
-    1/unit; 0 where the curve stands still or turns on the spot.
+    distance: along the path from its start, in the path's unit.
+    x, y: in that unit.
+    heading: direction of travel, in radians from the x-axis.
+    curvature: signed, positive to the left, in 1/unit; 0 where the curve stands still or turns on
+        the spot.
     """
 
     distance: np.ndarray
@@ -32,7 +34,7 @@ class Samples(NamedTuple):
 
 
 def sample_along(path: Path, n: int | None = None, step: float | None = None) -> Samples:
-    """Samples of a path at equal distances, both ends included.
+    """Sample a path at equal distances, both ends included.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
     Examples
     --------
     >>> corner = Path("polyline", np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]))
-    >>> samples = along(corner, step=1.0)
+    >>> samples = sample_along(corner, step=1.0)
     >>> samples.x.round(9).tolist(), samples.y.round(9).tolist()
     ([0.0, 1.0, 2.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0, 1.0])
     """
@@ -70,6 +72,7 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
     if step is not None:
         if not isinstance(step, Real) or not 0 < step < math.inf:
             raise ValueError(f"step: {step!r}; expected a number above 0")
+        # A length that is a multiple of the step up to rounding gets no sample more.
         n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
     if not isinstance(n, int | np.integer) or n < 2:
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
@@ -85,6 +88,7 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
         rate = _speed(pieces[piece], t)
         change = np.divide(rest - ran, rate, out=np.zeros(n), where=rate > 0)
         t = np.clip(t + change, low, low + width)
+    # Both ends to the last bit, whatever Newton's method leaves.
     t[0], t[-1] = 0.0, 1.0
     points = _values(pieces[piece], t)
     points[0], points[-1] = pieces[0, 0], pieces[-1, -1]
@@ -98,7 +102,7 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
 
 
 def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Arc length (n,) of pieces (n, degree + 1, 2) between two parameters each (n,)."""
+    """Return the arc length (n,) of pieces (n, degree + 1, 2) between two parameters each (n,)."""
     half = (high - low) / 2
     total = np.zeros(len(low))
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
@@ -107,21 +111,26 @@ def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarr
 
 
 def _values(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the points (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
     return np.einsum("sk,skd->sd", curves.bernstein(pieces.shape[1] - 1, t), pieces)
 
 
 def _derivatives(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the derivatives (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
     degree = pieces.shape[1] - 1
     return degree * _values(np.diff(pieces, axis=1), t)
 
 
 def _speed(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the speeds (n,) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
     return np.hypot(*_derivatives(pieces, t).T)
 
 
 def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Direction of travel (n,); where the curve stands still, that to a point just ahead, or at a
-    piece's end from one just behind.
+    """Return the direction of travel (n,).
+
+    Where the curve stands still, it is the direction to a point just ahead, or at a piece's end
+    from one just behind.
     """
     direction = _derivatives(pieces, t)
     size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))
@@ -135,6 +144,7 @@ def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def _curvatures(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the signed curvature (n,), 0 where it is not defined."""
     if pieces.shape[1] == 2:
         return np.zeros(len(t))
     return np.nan_to_num(curves.curvatures(pieces, t)[0])

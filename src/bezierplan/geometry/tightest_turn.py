@@ -21,6 +21,7 @@ def largest_curvature(path: Path) -> float:
     first = max(_LEAST_SAMPLES, _MOST_SAMPLES // len(pieces))
     low, high = np.zeros(len(pieces)), np.ones(len(pieces))
     rows, largest = np.arange(len(pieces)), 0.0
+    # The peak lies between the neighbours of the tightest sample; each round looks closer there.
     for count in (first, *[_LEAST_SAMPLES] * _ZOOMS):
         t = np.linspace(low, high, count, axis=1)
         kappa = np.nan_to_num(np.abs(curvatures(pieces.repeat(count, axis=0), t.ravel())[0]))

@@ -53,7 +53,7 @@ __all__ = [
 
 
 class Plan(NamedTuple):
-    """What a planner returns.
+    """The answer of a planner.
 
     Attributes
     ----------
@@ -89,7 +89,9 @@ class Plan(NamedTuple):
         stop: str,
         extra: dict[str, float | bool] | None = None,
     ) -> "Plan":
-        """The plan of who evaluates a single path and takes it for free, or finds none."""
+        """Build the plan of a planner that evaluates one path and considers it free, or finds
+        none.
+        """
         return cls(path, length, path is not None, 1, np.array([length]), stop, extra or {})
 
 
@@ -99,8 +101,10 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 
 @cache
 def load_planner(planner: str) -> ModuleType:
-    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a
-    user's own file, which can import the modules next to it at the top of the file.
+    """Import the module of a planner.
+
+    `name` stands for planners/name.py of this package, `folder/name.py` for a user's own file,
+    which can import the modules next to it at the top of the file.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
@@ -108,7 +112,7 @@ def load_planner(planner: str) -> ModuleType:
 
 
 def list_planners() -> list[str]:
-    """Names of the planners of this package."""
+    """List the names of the planners of this package."""
     return sorted(
         file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__"
     )
@@ -116,5 +120,8 @@ def list_planners() -> list[str]:
 
 @cache
 def read_settings(module: ModuleType) -> dict[str, Setting]:
-    """Settings of a planner, by name, in the order of its signature. Do not modify the result."""
+    """Read the settings of a planner, by name, in the order of its signature.
+
+    Do not modify the result: it is kept for the next call.
+    """
     return list_settings(module.plan)

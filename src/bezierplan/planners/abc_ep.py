@@ -66,7 +66,7 @@ class Settings(NamedTuple):
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest polyline found.
+    """Return the shortest polyline found.
 
     Parameters
     ----------
@@ -90,6 +90,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
+    # One point cannot be shortened.
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
     rules = settings._replace(
@@ -115,7 +116,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compile_kernel
 def _search(colony_rng, evolution_rng, occupied, start, target, rules):
-    """Points (points, 2) of the path, if found, and the least length so far (generations + 1,)."""
+    """Return the points (points, 2) of the path, none if not found, and the least length so far
+    (generations + 1,).
+    """
     path = _build_first_path(colony_rng, occupied, start, target, rules)
     if len(path) == 0:
         return path, np.full(1, np.inf)
@@ -128,8 +131,9 @@ def _search(colony_rng, evolution_rng, occupied, start, target, rules):
 
 @compile_kernel
 def _build_first_path(rng, occupied, start, target, rules):
-    """A free path (points, 2), point by point until the target is in sight; empty if no free point
-    is found or `_MOST_POINTS` do not suffice.
+    """Build a free path (points, 2), point by point until the target is in sight.
+
+    It is empty if no free point is found or `_MOST_POINTS` do not suffice.
     """
     path = np.empty((_MOST_POINTS + 2, 2))
     path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
@@ -148,7 +152,7 @@ def _build_first_path(rng, occupied, start, target, rules):
 
 @compile_kernel
 def _append_next_point(rng, occupied, target, path, count, rules):
-    """Append, in place, the best point found to the first `count` of a path. Returns its cost."""
+    """Append, in place, the best point found to the first `count` of a path; return its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
@@ -174,6 +178,7 @@ def _append_next_point(rng, occupied, target, path, count, rules):
                 _draw(rng, low, high, x[i])
                 cost[i] = _compute_cost(occupied, target, path, count, x[i], rules)
                 failures[i] = 0
+        # First each source's own bee, then the onlookers, who choose sources by their fitness.
         for turn in range(2):
             if turn == 1:
                 onlooked = draw_parents(rng, 1.0 / (1.0 + cost), _SOURCES)
@@ -181,6 +186,7 @@ def _append_next_point(rng, occupied, target, path, count, rules):
                 i = onlooked[bee] if turn == 1 else bee
                 other = draw_integer(rng, 0, _SOURCES - 1)
                 other += other >= i
+                # A bee moves one coordinate only.
                 k = draw_integer(rng, 0, 2)
                 point[0], point[1] = x[i, 0], x[i, 1]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
@@ -197,14 +203,14 @@ def _append_next_point(rng, occupied, target, path, count, rules):
 
 @allocation_free
 def _draw(rng, low, high, point):
-    """A random point of a box, in place."""
+    """Draw a random point of a box, in place."""
     for k in range(2):
         point[k] = low[k] + (high[k] - low[k]) * rng.random()
 
 
 @allocation_free
 def _compute_cost(occupied, target, path, count, point, rules):
-    """Cost of the next point: the distance to it, the distance from it to the target, and cones
+    """Return the cost of the next point: the distance to it and from it to the target, and cones
     over the cells around the points chosen before.
     """
     last = path[count - 1]
@@ -225,12 +231,13 @@ def _compute_cost(occupied, target, path, count, point, rules):
 
 @allocation_free
 def _measure_leg(x0, y0, x1, y1):
+    """Return the length of a leg between two points."""
     return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
 
 
 @compile_kernel
 def _cut_short(occupied, path):
-    """A path without unnecessary points: each point is joined to the last one that it sees."""
+    """Return a path without unnecessary points: each is joined to the last one that it sees."""
     kept = np.zeros(len(path), dtype=np.int64)
     count = 1
     while kept[count - 1] < len(path) - 1:
@@ -251,10 +258,11 @@ def _cut_short(occupied, path):
 
 @compile_kernel
 def _evolve(rng, occupied, path, rules):
-    """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations
-    + 1,).
+    """Return the cheapest path of the last generation (points, 2), and the lowest cost so far
+    (generations + 1,).
     """
     population, generations = rules.population, rules.generations
+    # A generation adds at most one point to a path.
     points = np.empty((2 * population, len(path) + generations, 2))
     counts = np.full(2 * population, len(path))
     # Parents first, starting with the cheapest; the other slots are for children.
@@ -279,8 +287,9 @@ def _evolve(rng, occupied, path, rules):
 
 @allocation_free
 def _mutate(rng, occupied, points, child, spread):
-    """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is
-    inserted. Returns the child's number of points.
+    """Make a child of a path, in place, and return its number of points.
+
+    An inner point is moved or dropped, or a midpoint is inserted.
     """
     kind, count = rng.random(), len(points)
     if count == 2 or kind >= _MOVE_SHARE + _REMOVAL_SHARE:
@@ -321,7 +330,7 @@ def _shift(rng, occupied, point, spread):
 
 @allocation_free
 def _price_path(occupied, points):
-    """Length of a path (points, 2), plus the penalty for each leg that is blocked."""
+    """Return the length of a path (points, 2), with a penalty for each blocked leg."""
     price = 0.0
     for p in range(len(points) - 1):
         x0, y0 = points[p, 0], points[p, 1]
@@ -333,7 +342,7 @@ def _price_path(occupied, points):
 
 @compile_kernel
 def _count_wins(rng, cost):
-    """For each path (n,), the number of random opponents that it is not worse than."""
+    """Count, for each path (n,), the random opponents that it is not worse than."""
     wins = np.zeros(len(cost), dtype=np.int64)
     for i in range(len(cost)):
         for _ in range(_OPPONENTS):
@@ -345,8 +354,9 @@ def _count_wins(rng, cost):
 
 @compile_kernel
 def _rank(slots, wins, cost):
-    """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses
-    to none, so it comes first.
+    """Sort slots in place, stably: most wins first, ties by lowest cost.
+
+    The cheapest of all loses to none, so it comes first.
     """
     cheapest_first = slots[ascending(cost[slots])]
     order = ascending(-wins[cheapest_first])

@@ -77,10 +77,11 @@ class Settings(NamedTuple):
 
 
 class Colony(NamedTuple):
-    """What a colony found.
+    """Result of a colony.
 
-    best: (n,) cells of the shortest path, empty if no ant arrived. history: (iterations,) the
-    shortest length so far, in cells. paths: (ants, cells) those of the last iteration's ants;
+    best: (n,) cells of the shortest path, empty if no ant arrived.
+    history: (iterations,) the shortest length so far, in cells.
+    paths: (ants, cells) those of the last iteration's ants.
     sizes: (ants,), 0 for an ant that died.
     """
 
@@ -92,7 +93,7 @@ class Colony(NamedTuple):
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid.
+    """Return the shortest path found over the 8-connected lattice of a grid.
 
     An ant draws its next cell from the unvisited neighbours, in proportion to trail**trail_weight *
     heuristic**heuristic_weight. An ant with no neighbour left dies.
@@ -125,10 +126,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony:
-    """The search behind `plan`. One iteration if start and target lie in the same cell."""
+    """Run the search behind `plan`, for one iteration if start and target lie in the same cell."""
     distance = np.hypot(
         places.row - places.row[places.target], places.column - places.column[places.target]
     )
+    # No division by 0; the target's own heuristic is a setting.
     distance[places.target] = 1.0
     heuristic = 1.0 / distance
     heuristic[places.target] = rules.target_heuristic
@@ -139,7 +141,9 @@ def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony
 
 @compile_kernel
 def _run_colony(rng, lattice, heuristic, rules):
-    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`.
+    """Return the best path, the history, and the last iteration's paths with their sizes, as in
+    `Colony`.
+
     heuristic: (cells,), with its weight applied.
     """
     cells = len(lattice.row)
@@ -167,6 +171,7 @@ def _run_colony(rng, lattice, heuristic, rules):
                 if walked < best_length:
                     best_size, best_length = put(paths[ant, : sizes[ant]], best, 0), walked
         history[iteration] = best_length
+        # Nobody walks after the last iteration, so its trails need no update.
         if iteration == rules.iterations - 1:
             break
 
@@ -181,6 +186,7 @@ def _run_colony(rng, lattice, heuristic, rules):
                     rules.evaporation * rules.deposit / best_length,
                 )
         else:
+            # All trails evaporate before any ant lays a new one.
             for cell in range(cells):
                 for step in range(8):
                     trail[cell, step] *= 1.0 - rules.evaporation
@@ -194,8 +200,9 @@ def _run_colony(rng, lattice, heuristic, rules):
 
 @compile_kernel
 def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
-    """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,)
-    the number of the last ant that visited each cell.
+    """Let an ant walk, write its path and return the size, or 0 if the ant dies.
+
+    visits: (cells,) the number of the last ant that visited each cell; so it need not be cleared.
     """
     steps, attraction = np.empty(8, dtype=np.int64), np.empty(8)
     cell = lattice.start
@@ -237,9 +244,11 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
 
 @allocation_free
 def _choose(rng, attraction, exploitation):
-    """A random index of an array (n,), in proportion to its values, or uniform if all are 0; with
-    the probability `exploitation`, that of the largest.
+    """Draw a random index of an array (n,), in proportion to its values, or uniform if all are 0.
+
+    With the probability `exploitation` it is the index of the largest value.
     """
+    # No number is drawn without exploitation, which the ant system does not have.
     if exploitation > 0 and rng.random() < exploitation:
         return np.argmax(attraction)
     total = attraction.sum()
@@ -250,6 +259,7 @@ def _choose(rng, attraction, exploitation):
         draw -= attraction[k]
         if draw < 0:
             return k
+    # Rounding can leave a rest of the draw after the last but one; it belongs to the last.
     return len(attraction) - 1
 
 

@@ -49,7 +49,7 @@ check = check_pairs
 def plan(
     problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, settings: Settings
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid.
+    """Return the shortest path found over the 8-connected lattice of a grid.
 
     The first population consists of the best path of all ants and the paths of the last iteration's
     ants, repeated in turn. Children lose their loops.
@@ -80,6 +80,7 @@ def plan(
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
+    # Without a path there is nothing to breed, and a path of one cell cannot change.
     if len(best) > 0 and places.start != places.target:
         rules = cell_paths.Rules(
             settings.crossover_probability,
@@ -104,7 +105,9 @@ def plan(
 def _choose_first_population(
     colony: ant_colony.Colony, population: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Paths (population, cells) and their sizes (population,)."""
+    """Return paths (population, cells) and their sizes: the best one, then the last ants' in
+    turn.
+    """
     paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
     sizes = np.full(population, len(colony.best))
     paths[:, : len(colony.best)] = colony.best

@@ -139,14 +139,17 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    """Check rules across several settings.
+
+    Raises ValueError naming the setting and what is expected.
+    """
     check_pairs(settings)
     check_curve(settings, "control_points")
 
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Curve with free control points at centres of free cells.
+    """Return the best curve found whose free control points are centres of free cells.
 
     Parameters
     ----------
@@ -182,6 +185,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     curve = CurveKind(settings.curve).name
     cells = _prepare_cells(grid, math.ceil(rules.safety_distance))
     sampled = _sample_curve(problem, curve, settings.control_points, settings.samples)
+    # Moves have a generator of their own: they do not depend on how often first curves are redrawn.
     starts, moves = rng.spawn(2)
     codes = cells.free[
         starts.integers(0, len(cells.free), size=(settings.population, settings.control_points))
@@ -193,6 +197,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         _redraw(starts, codes, cells, sampled)
 
     best, history = _search(moves, codes, cells, sampled, rules)
+    # The search measures the clearance only if the fitness asks for it, the table has it always.
     _, bad, clearance = _measure(best, cells, sampled, np.empty((3, settings.samples)), True)
     points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
     return Plan(
@@ -212,10 +217,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 class _Cells(NamedTuple):
     """The grid for the kernels, x along columns and y along rows, in cells.
 
-    occupied: bool (rows, columns), bottom row first. centres: (cells, 2), by code. legal: bool
-    (2**bits,), whether a code stands for a free cell. free: the codes of the free cells. near: (n,
-    2), column and row of occupied cells; those that may lie within the safety distance of a point
-    in the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
+    occupied: bool (rows, columns), bottom row first.
+    centres: (cells, 2), by code.
+    legal: bool (2**bits,), whether a code stands for a free cell.
+    free: the codes of the free cells.
+    near: (n, 2), column and row of occupied cells; near[first[i] : first[i + 1]] with i = columns
+        row + column may lie within the safety distance of a point in the cell (row, column).
     """
 
     occupied: np.ndarray
@@ -227,9 +234,12 @@ class _Cells(NamedTuple):
 
 
 class _Curve(NamedTuple):
-    """ends: (2, samples), x and y contributions of start and target to the samples, in cells. free:
-    (control points, samples), the weights of the free control points. straight: distance from start
-    to target, in cells. cell: side of a cell, in units.
+    """Samples of a curve as a linear map of its control points.
+
+    ends: (2, samples), x and y contributions of start and target to the samples, in cells.
+    free: (control points, samples), the weights of the free control points.
+    straight: distance from start to target, in cells.
+    cell: side of a cell, in units.
     """
 
     ends: np.ndarray
@@ -239,27 +249,39 @@ class _Curve(NamedTuple):
 
 
 def list_code_centres(rows: int, columns: int) -> np.ndarray:
-    """Centres (cells, 2) of the cells by code, in cells: numbered row by row from the top left,
-    from 0 (ma2020, eqs. 10 and 11, which number from 1).
+    """Return the centres (cells, 2) of the cells by code, in cells.
+
+    Codes count row by row from the top left, from 0 (ma2020, eqs. 10 and 11, which count from 1).
+
+    >>> list_code_centres(2, 2).tolist()
+    [[0.5, 1.5], [1.5, 1.5], [0.5, 0.5], [1.5, 0.5]]
     """
     down, along = np.indices((rows, columns)).reshape(2, -1)
     return np.column_stack([along + 0.5, rows - down - 0.5])
 
 
 def _prepare_cells(grid: Grid, reach: int) -> _Cells:
-    """The grid for the kernels; near: the occupied cells at most `reach` columns and rows away."""
+    """Prepare the grid for the kernels.
+
+    reach: `near` holds the occupied cells at most so many columns and rows away.
+
+    Raises ValueError if no cell is free.
+    """
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
     free = np.flatnonzero(legal)
     if not len(free):
         raise ValueError("all cells are occupied; expected a free cell for the control points")
+    # No window is wider than the map.
     reach = min(reach, max(rows, columns))
+    # A list for each cell: distances are then measured to a few cells, not to all occupied ones.
     around = np.lib.stride_tricks.sliding_window_view(
         np.pad(grid.occupied, reach), (2 * reach + 1, 2 * reach + 1)
     )
     row, column, up, right = np.nonzero(around)
     near = np.column_stack([column + right - reach, row + up - reach])
+    # The occupied cells around a cell follow each other, for `nonzero` goes cell by cell.
     at = columns * row + column
     return _Cells(
         grid.occupied,
@@ -272,6 +294,7 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
 
 
 def _sample_curve(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
+    """Prepare the samples of a curve for the kernels."""
     ends, free = compute_basis(curve, control_points, samples)
     grid = problem.workspace
     straight = math.dist(problem.start, problem.target) / grid.cell
@@ -282,11 +305,12 @@ def _sample_curve(problem: Problem, curve: str, control_points: int, samples: in
 
 @compile_kernel
 def _search(rng, codes, cells, curve, rules):
-    """The best chromosome (control points,), and the lowest cost so far (generations + 1,).
+    """Return the best chromosome (control points,), and the lowest cost so far (generations + 1,).
 
     codes: (population, control points), the first generation; overwritten.
     """
     population = len(codes)
+    # The logarithm of a power of 2 may be a rounding error off.
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
@@ -325,7 +349,9 @@ def _search(rng, codes, cells, curve, rules):
 
 @compile_kernel
 def _redraw(rng, codes, cells, curve):
-    """Redraw every chromosome, in place, until its curve is collision-free."""
+    """Redraw each chromosome, in place, until its curve is free, at most `_FEASIBLE_TRIES`
+    times.
+    """
     scratch = np.empty((3, curve.ends.shape[1]))
     for i in range(len(codes)):
         for _ in range(_FEASIBLE_TRIES):
@@ -351,7 +377,7 @@ def _mutate(rng, genes, bits, cells, rules):
 
 @allocation_free
 def _compute_cost(genes, cells, curve, rules, scratch):
-    """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
+    """Return a chromosome's cost, the reciprocal of its fitness (`Settings` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
     priced = length * (
         1.0 + rules.collision_factor * bad / curve.ends.shape[1]
@@ -378,7 +404,10 @@ def _compute_cost(genes, cells, curve, rules, scratch):
 
 @allocation_free
 def _compute_safety_term(bad, clearance, safety_distance):
-    """How far the path undercuts the safety distance: 0 to 1 (ma2020, eq. 14; 1 if it collides)."""
+    """Return how far the path undercuts the safety distance, 0 to 1 (ma2020, eq. 14).
+
+    It is 1 for a path that collides.
+    """
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
@@ -386,9 +415,11 @@ def _compute_safety_term(bad, clearance, safety_distance):
 
 @allocation_free
 def _measure(genes, cells, curve, scratch, with_clearance):
-    """Length in cells of the polyline through a curve's samples, the number of colliding samples,
-    and the minimum distance of the samples to the occupied cells nearby: infinite if there are
-    none, 0 for a path that collides or if it is not requested.
+    """Measure the polyline through a curve's samples.
+
+    Returns its length in cells, the number of colliding samples, and the least distance of the
+    samples to the occupied cells nearby: infinite if there are none, 0 for a path that collides or
+    if it is not requested.
 
     scratch: (3, samples).
     """
@@ -415,8 +446,10 @@ def _measure(genes, cells, curve, scratch, with_clearance):
 
 @allocation_free
 def count_collisions(x, y, occupied):
-    """Number of samples that lie inside an occupied cell or end a chord that passes through one
-    between its ends. Touching is allowed.
+    """Count the samples that lie inside an occupied cell or end a chord that passes through one
+    between its ends.
+
+    Touching is allowed.
     """
     rows, columns = occupied.shape
     bad = 0
@@ -426,6 +459,7 @@ def count_collisions(x, y, occupied):
         column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
         if occupied[row, column] and _is_inside(x[s], column) and _is_inside(y[s], row):
             bad += 1
+        # A chord within one cell, or to a cell that shares a side, passes through no other.
         elif abs(column - last_column) + abs(row - last_row) > 1:
             bad += _cuts_obstacle(x[s - 1], y[s - 1], x[s], y[s], occupied)
     return bad
@@ -433,13 +467,13 @@ def count_collisions(x, y, occupied):
 
 @allocation_free
 def _is_inside(value, cell):
-    """Whether a coordinate is between the grid lines of its cell; rounding must not decide."""
+    """Tell whether a coordinate is between the grid lines of its cell; rounding must not decide."""
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
 @allocation_free
 def _cuts_obstacle(x, y, x_end, y_end, occupied):
-    """Whether a chord passes through an occupied cell between the cells of its ends.
+    """Tell whether a chord passes through an occupied cell between the cells of its ends.
 
     The chord is divided so that no part crosses two grid lines of the same kind; a part that
     crosses one of each kind passes through one more cell.
@@ -471,7 +505,10 @@ def _cuts_obstacle(x, y, x_end, y_end, occupied):
 
 @allocation_free
 def _measure_clearance(x, y, cells):
-    """Minimum distance in cells of samples to the occupied cells near theirs, or infinite."""
+    """Return the least distance, in cells, of samples to the occupied cells near theirs.
+
+    It is infinite if there are none.
+    """
     rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):

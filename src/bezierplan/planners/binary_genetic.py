@@ -117,7 +117,10 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    """Check rules across several settings.
+
+    Raises ValueError naming the setting and what is expected.
+    """
     check_curve(settings, "genes")
     check_pairs(settings)
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
@@ -126,7 +129,7 @@ def check(settings: dict) -> None:
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest penalised curve through free control points.
+    """Return the shortest penalised curve found through free control points.
 
     Parameters
     ----------
@@ -190,6 +193,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if settings.rejection != Rejection.none and len(rest) < len(points):
         # Too few points for pieces of this degree define one piece of a lower degree.
         shorter = Path(curve if len(rest) >= curves.least_points(curve) else "bezier", rest)
+        # Without a point the curve changes, so its samples are tested again.
         bad = _count_bad_samples(shorter, grid, occupied, settings.samples)
         if bad <= best_bad or settings.rejection != Rejection.harmless:
             path, best_bad = shorter, bad
@@ -207,13 +211,13 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 def drop_repeated_points(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
     """Return the control points (m, 2) of (n, 2) that coincide with no other (song2016, Remark 3).
 
-    Start and target stay, and the first of several free ones. consecutive: whether only points
-    that follow each other count as coinciding.
+    Start and target stay, and the first of several free ones. With `consecutive` only points that
+    follow each other count as coinciding.
 
     >>> points = np.array([[0, 0], [0, 0], [2, 1], [3, 1], [2, 1], [4, 0]])
-    >>> distinct(points).tolist()
+    >>> drop_repeated_points(points).tolist()
     [[0, 0], [2, 1], [3, 1], [4, 0]]
-    >>> distinct(points, consecutive=True).tolist()
+    >>> drop_repeated_points(points, consecutive=True).tolist()
     [[0, 0], [2, 1], [3, 1], [2, 1], [4, 0]]
     """
     start, *inner, target = map(tuple, points.tolist())
@@ -226,17 +230,18 @@ def drop_repeated_points(points: np.ndarray, consecutive: bool = False) -> np.nd
 
 
 def _count_bad_samples(path: Path, grid: Grid, occupied: np.ndarray, samples: int) -> int:
-    """Return the number of samples of a path that lie in occupied cells."""
+    """Count the samples of a path that lie in occupied cells."""
     basis = curves.sample_matrix(path.curve, len(path.points), samples)
     column, row = np.floor(grid.in_cells(basis @ path.points) + ON_LINE).astype(int).T
     return int(occupied[row, column].sum())
 
 
 def find_stretches(basis: np.ndarray) -> np.ndarray:
-    """Runs of chords between samples whose two ends depend on the same control points.
+    """Find runs of chords between samples whose two ends depend on the same control points.
 
-    basis: (samples, control points), the curve's linear map. Returns (stretches, 4): first and last
-    control point, first and last sample.
+    basis: (samples, control points), the curve's linear map.
+
+    Returns (stretches, 4): first and last control point, first and last sample.
     """
     first = (basis != 0).argmax(axis=1)
     last = basis.shape[1] - 1 - (basis != 0)[:, ::-1].argmax(axis=1)
@@ -247,8 +252,10 @@ def find_stretches(basis: np.ndarray) -> np.ndarray:
 
 
 class _Curve(NamedTuple):
-    """How chromosomes are measured. basis: (control points, samples), the curve's linear map;
-    stretches: those of `find_stretches`.
+    """How chromosomes are measured.
+
+    basis: (control points, samples), the curve's linear map.
+    stretches: found by `find_stretches`.
     """
 
     basis: np.ndarray
@@ -258,17 +265,20 @@ class _Curve(NamedTuple):
 
 @compile_kernel
 def _search(rng, cells, occupied, places, curve, rules):
-    """Cells (control points,) of the best chromosome, the number of its samples in occupied cells,
-    and the best objective so far, or of each generation (generations + 1,).
+    """Run the genetic algorithm.
 
-    cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres,
-    then start and target, in cells.
+    Returns the cells (control points,) of the best chromosome, the number of its samples in
+    occupied cells, and the best objective so far, or of each generation (generations + 1,).
+
+    cells: (population, control points) numbers of cells.
+    places: (cells + 2, 2) the cells' centres, then start and target, in cells.
     """
     population = len(cells)
     basis, stretches = curve.basis, curve.stretches
+    # The logarithm of a power of 2 may be a rounding error off.
     bits = int(np.log2(occupied.size) + 0.5)
     lengths = np.empty((population, len(stretches)))
-    # Of each stretch, how many samples lie in occupied cells, and how often they enter one.
+    # By stretch: how many samples lie in occupied cells, and how often they enter one.
     bad = np.empty((population, len(stretches)), dtype=np.int64)
     entries = np.empty_like(bad)
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
@@ -279,6 +289,7 @@ def _search(rng, cells, occupied, places, curve, rules):
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)
+    # Flat, so that kernels look up a cell by its number.
     by_number, columns, samples = occupied.ravel(), occupied.shape[1], basis.shape[1]
     scratch = (
         np.empty(samples),
@@ -292,6 +303,7 @@ def _search(rng, cells, occupied, places, curve, rules):
             # Elitism brings the best of the generation before, so this one is never worse.
             best_objective = np.inf
         for i in range(population):
+            # Both parents of the pair: a crossover gives a child parts of either.
             mother, father = draws[i - i % 2], draws[min(i | 1, population - 1)]
             length, count, visits = 0.0, 0, 0
             for k in range(len(stretches)):
@@ -351,8 +363,8 @@ def _search(rng, cells, occupied, places, curve, rules):
 
 @allocation_free
 def _count_penalties(bad, entries, penalty_for):
-    """How often the penalty is added for so many samples in occupied cells and so many entries into
-    them (song2016, eq. 9).
+    """Return how often the penalty is added for so many samples in occupied cells and so many
+    entries into them (song2016, eq. 9).
     """
     if penalty_for == PenaltyFor.each_sample:
         return bad
@@ -379,12 +391,15 @@ def _mutate(rng, genes, bits, probability, mutation):
 
 @allocation_free
 def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_entries):
-    """Length in cells of one stretch of a curve, the number of its samples in occupied cells, not
-    counting the first, and how often they enter one, 0 if it is not requested.
+    """Measure one stretch of a curve.
 
-    occupied: (cells,), of a grid with so many columns. basis: (control points, samples). scratch:
-    three arrays (samples,) of numbers and one of whole numbers. Start and target lie in free cells,
-    so no sample is missed.
+    Returns its length in cells, the number of its samples in occupied cells, not counting the
+    first, and how often they enter one, 0 if it is not requested. Start and target lie in free
+    cells, so no sample is missed.
+
+    occupied: (cells,), of a grid with so many columns.
+    basis: (control points, samples).
+    scratch: three arrays (samples,) of numbers and one of whole numbers.
     """
     first_point, last_point, first, last = stretch
     x, y, chords, numbers = scratch
@@ -416,8 +431,10 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_ent
 
 @compile_kernel
 def _measure_by_arc_length(cells, occupied, places, samples):
-    """Length in cells of a polyline, the number of samples, equally spaced along it, that lie in
-    occupied cells, and how often they enter one.
+    """Measure a polyline at samples that are equally spaced along it.
+
+    Returns its length in cells, the number of samples that lie in occupied cells, and how often
+    they enter one.
     """
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
@@ -433,6 +450,7 @@ def _measure_by_arc_length(cells, occupied, places, samples):
         while p < points - 2 and along > passed[p + 1]:
             p += 1
         edge = passed[p + 1] - passed[p]
+        # A leg of length 0 has no shares, and rounding must not lead beyond its end.
         share = min((along - passed[p]) / edge, 1.0) if edge > 0 else 1.0
         row = int(y[p] + share * (y[p + 1] - y[p]) + ON_LINE)
         column = int(x[p] + share * (x[p + 1] - x[p]) + ON_LINE)

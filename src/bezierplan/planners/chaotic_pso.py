@@ -59,13 +59,16 @@ _SPREAD = 0.05
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after
-    iteration 0, 1, ..., done. violation: that of the last of them. infeasible: number of evaluated
-    paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
-    obstacles. best_colliding_samples: those of the best path, summed over the iterations.
-    best_infeasible: number of iterations, including the initial one, after which the best path
-    collides. zeta_clips: number of clipped values of the chaotic sequence. zeta_collapsed_at: the
-    iteration at which the sequence collapsed, or 0.
+    positions: (done + 1, 2 n) of its best path after iteration 0, 1, ..., done.
+    fitness: (done + 1,) of the same paths.
+    violation: the last path's.
+    infeasible: number of evaluated paths that collide.
+    colliding_samples: colliding samples of all evaluated paths, summed over obstacles.
+    best_colliding_samples: colliding samples of the best path, summed over the iterations.
+        best_infeasible: number of iterations, including the initial one, after which the best path
+        collides.
+    zeta_clips: number of clipped values of the chaotic sequence.
+    zeta_collapsed_at: the iteration at which the sequence collapsed, or 0.
     """
 
     positions: np.ndarray
@@ -177,7 +180,10 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    """Check rules across several settings.
+
+    Raises ValueError naming the setting and what is expected.
+    """
     try:
         curves.piece_matrix(settings["curve"], settings["control_points"] + 2)
     except ValueError as error:
@@ -194,7 +200,7 @@ def check(settings: dict) -> None:
 def plan(
     problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None
 ) -> Plan:
-    """Shortest penalised curve from start to target with free control points.
+    """Return the shortest penalised curve found from start to target with free control points.
 
     Parameters
     ----------
@@ -247,9 +253,10 @@ def plan(
 
 
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
-    """Control points (iterations done + 1, control points, 2) of the best path after every
-    iteration of the run that `plan` makes with the same generator and settings, in units
-    (tharwat2018, Figure 12).
+    """Return the control points of the best path after every iteration of the run that `plan` makes
+    with the same generator and settings (tharwat2018, Figure 12).
+
+    The array is (iterations done + 1, control points, 2), in units.
     """
     positions = search(problem, rng, fill_settings(Settings, settings)).positions
     return np.array([_place_points(position, settings["curve"], problem) for position in positions])
@@ -258,7 +265,9 @@ def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.nda
 def search(
     problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None
 ) -> Swarm:
-    """The search behind `plan` and `track`."""
+    """Run the search behind `plan` and `track`."""
+    # Three generators: a swarm with a chaotic sequence starts and moves with the numbers of the
+    # plain one.
     initial, moves, chaos = rng.spawn(3)
     particles, iterations, dimensions = (
         settings.particles,
@@ -266,8 +275,10 @@ def search(
         2 * settings.control_points,
     )
     if dimensions == 0:
+        # Without free control points there is one path, the straight line.
         particles, iterations = 1, 0
     objective = _build_objective(problem, settings)
+    # All x first, then all y, as in a particle.
     low, high = np.repeat(
         np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1
     )
@@ -278,6 +289,7 @@ def search(
         shares[:around] = np.clip(
             known + _SPREAD * initial.standard_normal((around, dimensions)), 0.0, 1.0
         )
+        # The given path itself takes part, so the best one is never worse.
         shares[0] = known
     x = low + (high - low) * shares
     zeta, clips, collapsed_at = _draw_zeta(chaos, (iterations, particles, dimensions), settings)
@@ -291,6 +303,7 @@ def search(
 
 
 def _build_objective(problem: Problem, settings: Settings) -> Objective:
+    """Prepare the fitness of a path for the kernels."""
     ends, free = penalised.compute_basis(
         Curve(settings.curve).name, settings.control_points, settings.samples
     )
@@ -305,7 +318,7 @@ def _build_objective(problem: Problem, settings: Settings) -> Objective:
 
 
 def _place_points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
-    """Control points (n + 2, 2) of a particle (2 n,)."""
+    """Return the control points (n + 2, 2) of a particle (2 n,)."""
     n = len(position) // 2
     points = np.empty((n + 2, 2))
     points[list(curves.ends(curve))] = problem.start, problem.target
@@ -316,8 +329,10 @@ def _place_points(position: np.ndarray, curve: str, problem: Problem) -> np.ndar
 def _draw_zeta(
     chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings
 ) -> chaotic_maps.Sequence:
-    """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the
-    iteration at which it collapsed.
+    """Draw the chaotic sequence.
+
+    Returns its values (iterations, particles or 1, dimensions or 1), the number of those clipped,
+    and the iteration at which it collapsed.
     """
     shape = size[: settings.zeta_for + 1]
     shape += (1,) * (3 - len(shape))
@@ -330,16 +345,18 @@ def _draw_zeta(
     elif settings.chaotic_start_rule == StartRule.uniform:
         start = chaos.random()
     found = chaotic_maps.compute_sequence(name, start, math.prod(shape), settings.singer_mu)
+    # From the number at which it collapsed to the iteration that uses this number.
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clips, collapsed_in)
 
 
 @compile_kernel
 def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
-    """Algorithm 1 of tharwat2018; returns the first fields of a `Swarm`.
+    """Run Algorithm 1 of tharwat2018 and return the first fields of a `Swarm`.
 
-    x: (particles, dimensions), the initial positions; moved in place. zeta: (iterations, particles
-    or 1, dimensions or 1). low, high, limit: (dimensions,), the field and the largest velocity.
+    x: (particles, dimensions), the initial positions; moved in place.
+    zeta: (iterations, particles or 1, dimensions or 1).
+    low, high, limit: (dimensions,), the field and the largest velocity.
     """
     iterations = len(zeta)
     particles, dimensions = x.shape
@@ -379,6 +396,8 @@ def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
                 g_fitness[t] = fitness
                 g_violation, g_colliding = violation, colliding
                 improved_at = t
+            # Each particle moves at once, with the best of those before it in the same iteration
+            # (Algorithm 1).
             if t < iterations:
                 if rules.random_numbers == RandomNumbers.particle or (
                     rules.random_numbers == RandomNumbers.iteration and i == 0
@@ -414,8 +433,8 @@ def _measure_violation_of_points(particle, objective, scratch):
 
 @allocation_free
 def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
-    """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17,
-    CPSO-II: eq. 18).
+    """Move one particle, in place: its velocity and position (tharwat2018, eqs. 8 and 7; CPSO-I:
+    eq. 17, CPSO-II: eq. 18).
 
     zeta: (dimensions or 1,), this particle's number(s) of the chaotic sequence.
     """
@@ -423,6 +442,7 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
         if rules.random_numbers == RandomNumbers.dimension:
             r[0], r[1] = rng.random(), rng.random()
         r1, r2 = r[0], r[1]
+        # The chaotic number replaces one that was drawn: all methods draw the same numbers.
         if rules.chaotic_term == ChaoticTerm.cognitive:
             r1 = zeta[min(d, len(zeta) - 1)]
         elif rules.chaotic_term == ChaoticTerm.social:

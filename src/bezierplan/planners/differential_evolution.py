@@ -70,13 +70,16 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    """Check rules across several settings.
+
+    Raises ValueError naming the setting and what is expected.
+    """
     check_curve(settings, "control_points")
 
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest penalised curve through free control points anywhere in the field.
+    """Return the shortest penalised curve found, its free control points anywhere in the field.
 
     Parameters
     ----------
@@ -113,6 +116,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
     occupied = np.array(world.occupied) if cells else np.empty((0, 0), dtype=bool)
 
+    # Moves have a generator of their own, so they do not depend on how much the first vectors drew.
     starts, moves = rng.spawn(2)
     low, high = low.repeat(rules.control_points), high.repeat(rules.control_points)
     x = low + (high - low) * starts.random((rules.population, len(low)))
@@ -131,11 +135,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compile_kernel
 def _evolve(rng, x, low, high, objective, occupied, rules):
-    """DE/rand/1/bin: the best vector (2 n,), the lowest cost after each generation (generations +
-    1,), and the best vector's violation.
+    """Run DE/rand/1/bin.
 
-    x: (population, 2 n), the first generation; overwritten. low, high: (2 n,), the field, at whose
-    border coordinates are held. objective: of the curve's samples among circles or polygons.
+    Returns the best vector (2 n,), the lowest cost after each generation (generations + 1,), and
+    the best vector's violation.
+
+    x: (population, 2 n), the first generation; overwritten.
+    low, high: (2 n,), the field, at whose border coordinates are held.
+    objective: measures the curve's samples among circles or polygons.
     occupied: bool (rows, columns), (0, 0) where there are no cells.
     """
     population, dimensions = x.shape
@@ -149,6 +156,7 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
     for generation in range(1, rules.generations + 1):
         for i in range(population):
             a, b, c = _draw_three_others(rng, i, population)
+            # One coordinate always comes from the mutant, or a trial could equal its parent.
             forced = draw_integer(rng, 0, dimensions)
             for k in range(dimensions):
                 trials[i, k] = x[i, k]
@@ -156,7 +164,9 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
                     mutant = x[a, k] + rules.weight * (x[b, k] - x[c, k])
                     trials[i, k] = min(max(mutant, low[k]), high[k])
         for i in range(population):
+            # Selection waits until all trials are made, so each is made of the old generation.
             value, violated = _compute_cost(trials[i], objective, occupied, rules, scratch)
+            # A trial that is as good replaces its parent, so the search can cross a plateau.
             if value <= cost[i]:
                 copy(trials[i], x[i])
                 cost[i], violation[i] = value, violated
@@ -167,7 +177,7 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
 
 @allocation_free
 def _draw_three_others(rng, i, population):
-    """Three different vectors, none of which is i."""
+    """Draw three different vectors, none of which is i."""
     a = b = c = i
     while a == i:
         a = draw_integer(rng, 0, population)
@@ -180,7 +190,7 @@ def _draw_three_others(rng, i, population):
 
 @allocation_free
 def _compute_cost(vector, objective, occupied, rules, scratch):
-    """Length with what its violation adds, and the violation."""
+    """Return the length with what its violation adds, and the violation."""
     curve, chords = scratch
     penalised.write_curve(vector, objective, curve)
     length = penalised.measure_length(curve, chords)
@@ -196,7 +206,7 @@ def _compute_cost(vector, objective, occupied, rules, scratch):
 
 @allocation_free
 def _count_samples_in_occupied_cells(curve, occupied):
-    """Number of samples (2, samples) after the first in occupied cells (song2016, eq. 9)."""
+    """Count the samples (2, samples) after the first in occupied cells (song2016, eq. 9)."""
     rows, columns = occupied.shape
     bad = 0
     for s in range(1, curve.shape[1]):

@@ -1,6 +1,10 @@
 """Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of
 ma2020's competing methods (Section 4.1).
 
+Only the title of its reference 31 is known. Fish forage from cell to cell and occasionally follow
+one that is closer to the target; the paths of those that arrive form the first population of a
+genetic algorithm, which mutates a path by foraging a section of it again.
+
 Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow
 one that is closer to the target; the paths of those that arrive form the first population of a
 genetic algorithm, which mutates a path by foraging a section of it again.
@@ -56,7 +60,7 @@ check = check_pairs
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid.
+    """Return the shortest path found over the 8-connected lattice of a grid.
 
     Swarms of fish are released at the start until there are enough paths for the population. A fish
     enters no cell twice. Every `_FOLLOW_EVERY` steps it looks for others within sight, including
@@ -93,7 +97,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         settings = settings._replace(generations=0)
         paths, sizes, releases = np.array([[places.start]]), np.array([1]), 1
     else:
-        paths, sizes, releases = _place_first_paths(first, places, settings)
+        paths, sizes, releases = _collect_first_paths(first, places, settings)
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
     if len(sizes) > 0:
         rules = cell_paths.Rules(
@@ -116,8 +120,10 @@ _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 
 @compile_kernel
-def _place_first_paths(rng, lattice, swarm):
-    """The first paths (n, longest path) of fish that arrive, at most a population, their sizes
+def _collect_first_paths(rng, lattice, swarm):
+    """Release swarms until enough fish arrive, or `_RELEASES` times.
+
+    Returns the first paths (n, longest path) of fish that arrive, at most a population, their sizes
     (n,), and the number of releases.
     """
     most = swarm.population
@@ -143,6 +149,7 @@ def _place_first_paths(rng, lattice, swarm):
                     continue
                 cell = -1
                 if step % _FOLLOW_EVERY == 0:
+                    # Fish move one after another: those behind see where the others are by now.
                     cell = _follow(lattice, i, cells, states, visited[i], swarm)
                 if cell < 0:
                     cell = cell_paths.choose_cell_for_prey(
@@ -166,11 +173,10 @@ def _place_first_paths(rng, lattice, swarm):
 
 @allocation_free
 def _follow(lattice, i, cells, states, visited, swarm):
-    """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight
-    nearest to the target; -1 if there is none.
+    """Return the unvisited neighbour of a fish's cell that is nearest to its leader, or -1.
 
-    There is also none if the leader is no nearer to the target than the fish itself, or if too many
-    fish are in sight.
+    The leader is the fish in sight nearest to the target. There is no such neighbour if the leader
+    is no nearer to the target than the fish itself, or if too many fish are in sight.
     """
     in_sight, leader, near = (
         0,

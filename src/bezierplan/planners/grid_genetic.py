@@ -79,6 +79,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     walls = np.pad(grid.occupied, 1, constant_values=True)
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    # An end on the upper or right border lies in the last cell; the frame shifts all by one.
     (start_column, target_column), (start_row, target_row) = (
         np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     )
@@ -104,14 +105,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def _is_turn(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Whether (n,) a cell of a path is its first, its last, or one where the direction changes."""
+    """Tell which cells (n,) of a path are its first, its last, or change the direction."""
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
+    # A path of one cell has one entry, its first and its last.
     return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
 def _join_through_centres(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Points from start to target, which lie in the first and last cell, through cells' centres."""
+    """Join start and target, which lie in the first and last cell, through cells' centres."""
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
     first, last = (
@@ -125,9 +127,13 @@ def _join_through_centres(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on, and scratch. walls: bool (cells,), the framed grid row by row;
-    columns: of the framed grid. visits: (cells,) the number of the last walk that visited a cell,
-    or of all walks for cell 0, which is a wall. last_visit: (cells,) of `_cut_loops`.
+    """Rules and state of walks, and scratch.
+
+    walls: bool (cells,), the framed grid row by row.
+    columns: number of the framed grid's columns.
+    visits: (cells,) the number of the last walk that visited a cell, or of all walks for cell 0,
+        which is a wall.
+    last_visit: (cells,) scratch of `_cut_loops`.
     """
 
     walls: np.ndarray
@@ -159,6 +165,7 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
     history[0] = costs[0]
 
     for generation in range(rules.generations):
+        # All parents in one call, which sums up the wheel once.
         drawn = draw_parents(moves_rng, 1.0 / costs[:population], 2 * population)
         for i in range(population):
             head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
@@ -179,8 +186,10 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
 
 @compile_kernel
 def _select_best(paths, costs, population):
-    """The cheapest paths in ascending order of cost, ties in their original order; and their costs
-    (2 population,), with room for children.
+    """Return the cheapest paths in ascending order of cost, ties in their original order, and their
+    costs.
+
+    The costs are (2 population,), with room for children.
     """
     order = ascending(costs[: len(paths)])
     best = np.empty(2 * population)
@@ -191,9 +200,12 @@ def _select_best(paths, costs, population):
 
 @compile_kernel
 def _draw_first_walks(rng, walker, start, target, rules, walk):
-    """Return `population` paths, and their costs (2 population,): the first one directly to the
-    target, the others through a free cell that can be reached; none if the target cannot.
+    """Return `population` paths, and their costs (2 population,).
+
+    The first one leads directly to the target, the others through a free cell that can be reached;
+    there are none if the target cannot be reached.
     """
+    # The compiler needs an element to know the list's type.
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
@@ -217,8 +229,9 @@ def _draw_first_walks(rng, walker, start, target, rules, walk):
 
 @allocation_free
 def _extend(rng, walker, walk, count, goal):
-    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0
-    if there is no way.
+    """Continue a walk of `count` cells to a goal, in place, and return the new number of cells.
+
+    It is 0 if there is no way.
     """
     walls, columns, visits = walker.walls, walker.columns, walker.visits
     first = count
@@ -227,6 +240,7 @@ def _extend(rng, walker, walk, count, goal):
     while count >= first and walk[count - 1] != goal:
         cell = walk[count - 1]
         row, column = goal // columns - cell // columns, goal % columns - cell % columns
+        # No number is drawn where no step can be random.
         random = walker.random_step > 0 and rng.random() < walker.random_step
         best, chosen, seen = np.inf, -1, 0
         for k in range(8):
@@ -235,6 +249,7 @@ def _extend(rng, walker, walk, count, goal):
                 continue
             seen += 1
             away = (row - _ROW_STEPS[k]) ** 2 + (column - _COLUMN_STEPS[k]) ** 2
+            # Each of the neighbours seen so far stays chosen with equal probability.
             if (draw_integer(rng, 0, seen) == 0) if random else (away < best):
                 best, chosen = away, neighbour
         if chosen < 0:
@@ -248,8 +263,9 @@ def _extend(rng, walker, walk, count, goal):
 
 @allocation_free
 def _cut_loops(walk, count, last_visit):
-    """Remove the loops of a walk, in place: after each cell it continues as after its last visit
-    there. Returns the remaining number of cells.
+    """Remove the loops of a walk, in place, and return the remaining number of cells.
+
+    After each cell it continues as after its last visit there.
     """
     for k in range(count):
         last_visit[walk[k]] = k
@@ -265,7 +281,8 @@ def _cut_loops(walk, count, last_visit):
 @allocation_free
 def _join(rng, head, tail, index, common, walk):
     """Write the head of one path and the tail of another, joined at a random inner cell of both.
-    Returns its length, or 0 if there is no such cell.
+
+    Returns the length, or 0 if there is no such cell.
 
     index: (cells,) scratch, all -1 before and after.
     """
@@ -288,11 +305,13 @@ def _join(rng, head, tail, index, common, walk):
 
 @allocation_free
 def _walk_anew(rng, walker, path, count):
-    """Replace the section between two random cells of a path by a new walk, in place; returns the
-    new number of cells.
+    """Replace the section between two random cells of a path by a new walk, in place.
+
+    Returns the new number of cells.
     """
     one = draw_integer(rng, 0, count)
     other = draw_integer(rng, 0, count - 1)
+    # Another cell: numbers from `one` on move up by one.
     other += other >= one
     first, last = min(one, other), max(one, other)
     # The new walk is written after the path, followed by the path's tail; then both are moved
@@ -305,9 +324,11 @@ def _walk_anew(rng, walker, path, count):
 
 @allocation_free
 def _measure_path(path, count, columns, diagonal_cost):
-    """Cost of a path of `count` cells."""
+    """Return the cost of a path of `count` cells, in cells."""
     diagonal = 0
     for k in range(count - 1):
         step = abs(path[k + 1] - path[k])
+        # Steps along a row or a column change the number by 1 or by the columns; all others are
+        # diagonal.
         diagonal += step != 1 and step != columns
     return count - 1 - diagonal + diagonal_cost * diagonal

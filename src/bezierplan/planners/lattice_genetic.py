@@ -1,5 +1,11 @@
-"""Genetic algorithm for paths over the cells of a grid (GA), a competing method in
-ma2020 (Section 4.1; its reference 29, no parameters given).
+"""Genetic algorithm for paths over the cells of a grid (GA), a competing method in ma2020 (Section
+4.1; its reference 29, no parameters given).
+
+With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
+midpoints. Roulette, crossover between genes and elitism are those of BCA. Beside the path, two
+things differ: a chromosome whose cells cannot be joined has a fixed length instead of a surcharge
+for its collisions, and mutation draws another cell, unless it flips a bit as in BCA. With `rows` a
+chromosome is itself a path, initially one through a random free cell of each row.
 
 With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
 midpoints. Roulette, crossover between genes and elitism are those of BCA. What differs, beside the
@@ -79,7 +85,7 @@ check = check_pairs
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid.
+    """Return the shortest path found over the 8-connected lattice of a grid.
 
     Parameters
     ----------
@@ -114,6 +120,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         cells[:, 0], cells[:, -1] = places.start, places.target
         cells[:, 1:-1] = free[starts.integers(0, len(free), size=(population, genes))]
         if settings.initial == Initial.sorted:
+            # A stable sort: cells of the same sum keep the order in which they were drawn.
             order = np.argsort((places.row + places.column)[cells[:, 1:-1]], axis=1, kind="stable")
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
         best, history = _search(moves, places, free, cells, settings)
@@ -137,13 +144,17 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compile_kernel
 def _search(rng, lattice, free, cells, rules):
-    """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so
-    far (generations + 1,).
+    """Run the genetic algorithm on sequences of cells.
 
-    cells: (population, genes + 2), including start and target. free: (n,) cells.
+    Returns the path (n,) of the best chromosome, empty if none can be decoded, and the shortest
+    length so far (generations + 1,).
+
+    cells: (population, genes + 2), including start and target.
+    free: (n,) cells.
     """
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
+    # A flipped bit may give a number that is no cell, so there is an entry for every number.
     legal = np.zeros(1 << bits, dtype=np.bool_)
     legal[free] = True
     parents = np.empty_like(cells)
@@ -157,6 +168,7 @@ def _search(rng, lattice, free, cells, rules):
         for i in range(population):
             size = cell_paths.join(lattice, cells[i], path, marks)
             lengths[i] = cell_paths.measure_length(path[:size], lattice) if size else _UNDECODABLE
+            # The best is one with a path, whatever the fixed length of the others is.
             if size and lengths[i] < best_length:
                 cell_paths.put(cells[i], best, 0)
                 best_path, best_length = path[:size].copy(), lengths[i]
@@ -189,8 +201,10 @@ def _mutate(rng, genes, bits, free, legal, mutation):
 def _draw_first_paths(
     rng: np.random.Generator, places: Lattice, population: int, longest: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Paths (population, longest) from start to target through a random free cell of each row
-    between them, and their sizes (population,); 0 from the first one that cannot be found.
+    """Draw paths (population, longest) from start to target through a random free cell of each row
+    between them.
+
+    Returns them and their sizes (population,); 0 from the first one that cannot be found.
     """
     first, last = places.row[places.start], places.row[places.target]
     step = 1 if first < last else -1
@@ -225,5 +239,6 @@ def _join_rows(rng, lattice, free, ends, paths, sizes):
             sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
             if sizes[i]:
                 break
+        # Too few first paths are none, so the rest need not be drawn.
         if sizes[i] == 0:
             break

@@ -128,13 +128,18 @@ class Settings(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Result of a search. ones: those of the best chromosome, empty if none. cost: its length.
+    """Result of a search.
 
-    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
-    chromosomes in the population. q: (iterations,) mean Q of the pool at the end of an iteration,
-    where requested. population_q: (iterations + 1,) mean Q of the population. loops: iterations
-    whose pool is so alike that more offspring are made; endless: those of them that end at the cap.
-    batches: number of extra batches of offspring. evaluations: number of chromosomes validated.
+    ones: genes that are 1 in the best chromosome, empty if none.
+    cost: its length.
+    history: (iterations + 1,) best cost so far.
+    distinct: (iterations + 1,) number of distinct chromosomes in the population.
+    q: (iterations,) mean Q of the pool at the end of an iteration, where requested.
+    population_q: (iterations + 1,) mean Q of the population.
+    loops: iterations whose pool is so alike that more offspring are made.
+    endless: iterations among them that end at the cap.
+    batches: number of extra batches of offspring.
+    evaluations: number of chromosomes validated.
     valid_share: share of valid children.
     """
 
@@ -152,7 +157,10 @@ class Outcome(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
+    """Check rules across several settings.
+
+    Raises ValueError naming the setting and what is expected.
+    """
     check_pairs(settings)
     if settings["first_points"] > settings["most_points"]:
         raise ValueError(
@@ -165,7 +173,7 @@ def check(settings: dict) -> None:
 def plan(
     problem: Problem, rng: np.random.Generator, settings: Settings, last: np.ndarray | None = None
 ) -> Plan:
-    """Shortest curve through control points on a lattice of cells.
+    """Return the shortest curve found through control points on a lattice of cells.
 
     Parameters
     ----------
@@ -232,9 +240,11 @@ def plan(
 def resume(
     problem: Problem, rng: np.random.Generator, last: np.ndarray | None, **settings: Any
 ) -> tuple[Plan, np.ndarray | None]:
-    """A plan whose first population holds the path that the last call returned second, by its
-    control points (n, 2); None for the first plan, which is that of `plan`. Points that are no free
-    genes now are left out.
+    """Plan again with a first population that holds the path of an earlier call, by its control
+    points.
+
+    last: (n, 2), second result of the last call; None for the first plan, which is that of
+        `plan`. Points that are no free genes now are left out.
     """
     found = plan(problem, rng, last, **settings)
     return found, found.path.points[1:-1] if found.claimed_feasible else last
@@ -248,13 +258,14 @@ def search(
     start_genes: np.ndarray,
     scratch: Scratch,
 ) -> Outcome:
-    """Algorithm 2; without a diversity rule, the plain algorithm.
+    """Run Algorithm 2, or the plain algorithm if there is no diversity rule.
 
     start_genes: the genes that are 1 in a chromosome with which the first population begins; if
     there are none, all are random. scratch: `prepare_scratch` the field.
     """
     loops_on = rules.diversity == Diversity.more_offspring
     size = rules.population
+    # A pair of parents has two children, and each of them a mutated twin.
     children = 4 * (size // 2)
     places = size + (1 + rules.most_batches * loops_on) * children
     pool, kinds = (
@@ -271,6 +282,7 @@ def search(
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
         for row in range(size):
+            # Who costs `_UNFIT` only fills a place and is no path.
             if pool.cost[row] < min(best_cost, _UNFIT):
                 best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
@@ -302,6 +314,7 @@ def search(
         loops += extra_batches > 0
         endless += alike and extra_batches > 0
         gene_lists.select(pool, size, fill)
+        # The limit falls from one iteration to the next (Section 3.3).
         eta *= rules.eta_decay
     return Outcome(
         best,
@@ -320,8 +333,10 @@ def search(
 
 @allocation_free
 def _fill_population(rng, start_genes, child, pool, field, rules, scratch):
-    """Draw the first population: a place gets the first valid chromosome, or, after `_BARREN` draws
-    with as many control points as there may be, one that never counts if another place is filled.
+    """Draw the first population.
+
+    A place gets the first valid chromosome, or, after `_BARREN` draws with as many control points
+    as there may be, one that never counts if another place is filled.
 
     Returns the most control points that a random chromosome has from now on, and the number of
     chromosomes validated.
@@ -352,14 +367,18 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after
     those already in it.
 
-    wheel: (population,) running sum of the parents' weights in the draw. limit: of `validate`.
-    memory: of validated chromosomes, changed in place. Returns the number of chromosomes now in the
-    pool, of chromosomes validated, and of invalid children.
+    wheel: (population,) running sum of the parents' weights in the draw.
+    limit: see `validate`.
+    memory: holds validated chromosomes, changed in place.
+
+    Returns the number of chromosomes now in the pool, of chromosomes validated, and of invalid
+    children.
     """
     tries = invalid = 0
     for _ in range(rules.population // 2):
         one, other = _select_parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
+        # Without a crossover no cut is drawn.
         cut = draw_integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(2):
@@ -389,8 +408,9 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
 
 @compile_inline
 def _validate_new(ones, memory, field, rules, limit, scratch):
-    """`validate`, without the work for a chromosome that has been there before, as most children
-    have once the population is alike; limits never rise.
+    """Return `validate` of a chromosome, without the work if it has been there before.
+
+    Most children have, once the population is alike; limits never rise.
     """
     place, known = gene_lists.find_entry(ones, memory)
     if not known:
@@ -401,8 +421,9 @@ def _validate_new(ones, memory, field, rules, limit, scratch):
 
 @allocation_free
 def _select_parents(rng, wheel):
-    """Two different parents, as a rule in proportion to fitness (Algorithm 1, line 9). The second
-    is drawn from the wheel without the first one.
+    """Draw two different parents, in proportion to fitness (Algorithm 1, line 9).
+
+    The second is drawn from the wheel without the first one.
     """
     first = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
     first = min(first, len(wheel) - 1)
@@ -419,8 +440,8 @@ def _select_parents(rng, wheel):
 
 @allocation_free
 def _mutate(rng, child, count, settable, rate):
-    """Change random genes, except those that must not be set; returns how many are 1."""
-    # From one gene that changes to the next: the gaps of independent trials of equal probability.
+    """Change random genes, except those that must not be set, and return how many are 1."""
+    # Gaps of independent trials lead from one gene that changes to the next: no draw for each gene.
     unchanged = math.log1p(-rate) if rate < 1.0 else -np.inf
     gene = gene_lists.draw_gap(rng, unchanged)
     while gene < len(settable):
@@ -432,7 +453,7 @@ def _mutate(rng, child, count, settable, rate):
 
 @allocation_free
 def _draw_chromosome(rng, child, choices, most):
-    """Write a chromosome of 1 to `most` random genes; returns how many."""
+    """Write a chromosome of 1 to `most` random genes and return how many."""
     wanted = min(draw_integer(rng, 1, most + 1), len(choices))
     count = 0
     while count < wanted:
@@ -445,7 +466,7 @@ def _draw_chromosome(rng, child, choices, most):
 
 @allocation_free
 def _is_too_alike(ones, cost, pool, fill, eta, genes, diversity):
-    """Return whether the rule `relaxing` or `unique` rejects a child (Section 3.3)."""
+    """Tell whether the rule `relaxing` or `unique` rejects a child (Section 3.3)."""
     total = 0.0
     for i in range(fill):
         other = pool.ones[i, : pool.count[i]]

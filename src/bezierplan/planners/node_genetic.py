@@ -145,11 +145,15 @@ class Settings(NamedTuple):
 
 
 class _Outcome(NamedTuple):
-    """path: the cells of the result, empty if there was no first population. objective: its energy
-    plus penalty. encounters: number of occupied cells it meets. history: lowest objective so far,
-    by generation. feasible_last: share of feasible paths in the last population. made_infeasible:
-    share of mutated feasible paths that the mutation made infeasible. diversity: mean of
-    `measure_node_diversity`.
+    """Result of a search.
+
+    path: the cells, empty if there was no first population.
+    objective: the path's energy plus penalty.
+    encounters: number of occupied cells that it meets.
+    history: lowest objective so far, by generation.
+    feasible_last: share of feasible paths in the last population.
+    made_infeasible: share of mutated feasible paths that the mutation made infeasible.
+    diversity: mean of `measure_node_diversity` over the generations.
     """
 
     path: np.ndarray
@@ -168,8 +172,8 @@ check = check_pairs
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the
-    friction.
+    """Return the path from cell to cell with the least energy found: its length, plus its climbs
+    divided by the friction.
 
     Parameters
     ----------
@@ -202,6 +206,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ground = build_ground(grid, friction, closed)
     start, target = (_find_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
     optimum = find_least_energy(grid, friction, closed, start, target)
+    # Moves have a generator of their own: they do not depend on how many draws the first paths
+    # took.
     starts, moves = rng.spawn(2)
     if count_obstacles_on(ground, start, target) == 0:
         # No search needed: a walk sees its target immediately, and paths without inner nodes cannot
@@ -212,6 +218,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         )
         stop = "direct"
     elif math.isinf(optimum):
+        # No walk would arrive, and each first path would take all its tries.
         result, stop = _NOTHING, "no path"
     else:
         alleles = _list_inner_cells(
@@ -261,7 +268,9 @@ _NOTHING = _Outcome(
 
 
 def _list_inner_cells(cells: np.ndarray, start: int, target: int) -> np.ndarray:
-    """Numbers of the cells marked in a bool array (rows, columns), without start and target."""
+    """List the cells marked in a bool array (rows, columns), by number, without start and
+    target.
+    """
     numbers = np.flatnonzero(cells)
     return numbers[(numbers != start) & (numbers != target)]
 
@@ -273,6 +282,10 @@ def serves(problem: Problem) -> None:
 
 
 def _find_cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
+    """Return the number of the cell whose centre is a point.
+
+    Raises ValueError, naming the end, for any other point.
+    """
     row, column = grid.cell_of(*point)
     number = int(row * grid.occupied.shape[1] + column)
     if point != grid.centre(number):
@@ -289,7 +302,11 @@ def _find_cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 
 @compile_kernel
 def _search(starts, moves, ground, start, target, free, alleles, rules):
-    """The genetic algorithm. free: free cells without the ends; alleles: for random mutation."""
+    """Run the genetic algorithm.
+
+    free: free cells without the ends.
+    alleles: cells from which random mutation draws.
+    """
     population = rules.population
     paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
     lengths = np.empty(population, dtype=np.int64)
@@ -304,6 +321,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             return _Outcome(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
     children, child_lengths = paths.copy(), lengths.copy()
     objective, encounters = np.empty(population), np.empty(population, dtype=np.int64)
+    # The best of n paths has weight n, the worst 1.
     ranks = np.arange(population, 0, -1).astype(np.float64)
     neighbours = np.empty(MOST_NEIGHBOURS, dtype=np.int64)
     history = np.empty(rules.generations + 1)
@@ -318,6 +336,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         diversity += measure_node_diversity(paths, lengths, ground.occupied.size)
         order = ascending(objective)
         first = order[0]
+        # A gain within rounding must not put off the end that `stall` sets.
         if objective[first] < best_objective - _IMPROVEMENT:
             if len(best) < lengths[first]:
                 best = np.empty(paths.shape[1], dtype=np.int64)
@@ -341,11 +360,14 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             parents = np.empty_like(order)
             for i in range(population):
                 parents[i] = order[draw_below(moves, population // 2)]
+        # A child has at most the nodes of both parents; arrays only grow, so they are rarely made
+        # anew.
         if rules.cut == Cut.independent and 2 * lengths.max() > children.shape[1]:
             children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
+                # Cuts lie behind the start and before the target.
                 cut = other_cut = 1 + draw_below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
                     cut = 1 + draw_below(moves, lengths[mother] - 1)
@@ -363,10 +385,13 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         paths, children = children, paths
         lengths, child_lengths = child_lengths, lengths
         for i in range(population):
+            # Feasibility is asked before and after each mutation, for the share that mutation
+            # destroys.
             for _ in range(lengths[i] - 2 if rules.mutation_for == MutationFor.node else 1):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
                     was_feasible = count_obstacles_along(path, ground) == 0
+                    # Neighbours that an operator compares count as evaluated.
                     evaluations += mutate(moves, path, alleles, ground, rules, neighbours)
                     feasible += was_feasible
                     losses += was_feasible and count_obstacles_along(path, ground) > 0
@@ -375,6 +400,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             lengths[0] = best_length
 
     if rules.result == Result.last_generation:
+        # The last generation was evaluated, but not bred from, so `first` is its best.
         best = paths[first]
         best_length = lengths[first]
         best_objective = objective[first]
@@ -397,9 +423,9 @@ def join(
     head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray
 ) -> int:
     """Write to a child the first `cut` nodes of one path and those after the first `tail_cut` of
-    another (meledje, Section 2.6).
+    another (meledje, Section 2.6), and return its length.
 
-    Returns its length. Cuts after the last node leave the head unchanged.
+    Cuts after the last node leave the head unchanged.
     """
     copy(head[:cut], child)
     copy(tail[tail_cut:tail_length], child[cut:])
@@ -408,7 +434,9 @@ def join(
 
 @allocation_free
 def _evaluate(path, ground, penalty):
-    """Energy of a path plus penalty, and occupied cells its edges meet (meledje, eqs. 1 to 3)."""
+    """Return the energy of a path plus penalty, and the number of occupied cells its edges meet
+    (meledje, eqs. 1 to 3).
+    """
     energy = 0.0
     for k in range(len(path) - 1):
         energy += compute_edge_energy(ground, path[k], path[k + 1])
@@ -418,8 +446,9 @@ def _evaluate(path, ground, penalty):
 
 @compile_kernel
 def measure_node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
-    """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner
-    nodes. cells: number of cells.
+    """Return the probability that an inner node of one path (n, ...) is not a node of another.
+
+    It is 0 without inner nodes. cells: number of cells.
     """
     having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
     for i in range(len(paths)):
@@ -439,7 +468,7 @@ def measure_node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -
 
 @compile_kernel
 def _draw_first_path(rng, path, target, free, ground, rules, ways):
-    """Write a random path after its start; return its number of nodes, 0 if none was found.
+    """Write a random path after its start and return its number of nodes, 0 if none was found.
 
     ways: `compute_free_ways`, for `rejection`.
     """
@@ -481,7 +510,7 @@ def draw_feasible_path(
     ground: Ground,
     ways: np.ndarray,
 ) -> int:
-    """Write a feasible path after its start; return its number of nodes, 0 if there is none.
+    """Write a feasible path after its start and return its number of nodes, 0 if there is none.
 
     Its number of inner nodes and their cells have the chances that they have where random numbers
     within the limit and random free cells are drawn until the path is feasible. Drawing them so
@@ -502,14 +531,16 @@ def draw_feasible_path(
 
 @allocation_free
 def _walk(rng, path, target, free, ground):
-    """A walk from cell to visible cell, none visited twice, until the target is visible; returns 0
-    if it becomes too long or sees no new cell.
+    """Walk from cell to visible cell, none visited twice, until the target is visible.
+
+    Returns the number of nodes, 0 if the walk becomes too long or sees no new cell.
     """
     length = 1
     while count_obstacles_on(ground, path[length - 1], target) > 0:
         if length == len(path) - 1:
             return 0
         path[length] = -1
+        # Where many cells are visible, a few draws find one faster than a look at all of them.
         for _ in range(len(free)):
             cell = free[draw_below(rng, len(free))]
             if _can_continue(cell, path, length, ground):
@@ -526,8 +557,10 @@ def _walk(rng, path, target, free, ground):
 
 @allocation_free
 def _draw_one_of_few(rng, path, length, free, ground):
-    """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it,
-    found by checking all cells; -1 if there is none.
+    """Draw a cell that is visible from the last cell of a path and not yet part of it, each with
+    equal probability; -1 if there is none.
+
+    All cells are checked.
     """
     count = 0
     for cell in free:
@@ -545,7 +578,7 @@ def _draw_one_of_few(rng, path, length, free, ground):
 
 @allocation_free
 def _can_continue(cell, path, length, ground):
-    """Whether a cell is visible from the last cell of a path and not yet part of it."""
+    """Tell whether a cell is visible from the last cell of a path and not yet part of it."""
     return count_obstacles_on(ground, path[length - 1], cell) == 0 and not _is_among(
         cell, path, length
     )
@@ -553,6 +586,7 @@ def _can_continue(cell, path, length, ground):
 
 @allocation_free
 def _is_among(cell, path, length):
+    """Tell whether a cell is one of the first `length` of a path."""
     for k in range(length):
         if path[k] == cell:
             return True
@@ -561,7 +595,7 @@ def _is_among(cell, path, length):
 
 @allocation_free
 def _draw_random_path(rng, path, target, free):
-    """A random number of inner nodes within the limit, each a random free cell."""
+    """Write a random number of inner nodes within the limit, each a random free cell."""
     inner = draw_below(rng, len(path) - 1)
     for k in range(1, inner + 1):
         path[k] = free[draw_below(rng, len(free))]

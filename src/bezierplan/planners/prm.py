@@ -61,7 +61,7 @@ class Settings(NamedTuple):
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Shortest path along a random roadmap, a polyline.
+    """Return the shortest path along a random roadmap, a polyline.
 
     With the same generator, the nodes of a smaller roadmap are the first nodes of a larger one.
 
@@ -84,6 +84,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     neighbours = settings.neighbours if settings.links == Links.nearest else None
     drawn, way = 0, ()
+    # Later roadmaps take further numbers of the same generator.
     while drawn < settings.attempts and not len(way):
         length, way, roads = search_roadmap(
             problem, rng, settings.nodes, neighbours, settings.d_min
@@ -100,8 +101,10 @@ def search_roadmap(
     neighbours: int | None,
     d_min: float = 0.0,
 ) -> tuple[float, np.ndarray, int]:
-    """Length and points (n, 2) of the shortest path along a random roadmap, infinite and empty if
-    there is none, and the number of links.
+    """Draw a random roadmap and find the shortest path along it.
+
+    Returns the path's length and points (n, 2), infinite and empty if there is none, and the number
+    of links.
 
     neighbours: how many of its nearest nodes a node may be linked with, None for all.
     """
@@ -123,8 +126,10 @@ def search_roadmap(
 
 
 def _prepare_circles(circles: Circles, d_min: float) -> tuple:
-    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and
-    functions that tell which points and segments (n,) are free.
+    """Return what the roadmap needs from circles.
+
+    These are two corners (2,) between which nodes are drawn, and functions that tell which points
+    and which segments (n,) are free.
     """
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
@@ -137,8 +142,10 @@ def _prepare_circles(circles: Circles, d_min: float) -> tuple:
 
 
 def _prepare_grid(grid: Grid, d_min: float) -> tuple:
-    """`_prepare_circles` for a grid: nodes lie between the centres of the outermost cells, in free
-    cells.
+    """Return `_prepare_circles` for a grid, where nodes lie in free cells, between the centres of
+    the outermost ones.
+
+    Raises ValueError for a `d_min` above 0.
     """
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
@@ -153,10 +160,11 @@ def _draw_free_points(
     high: np.ndarray,
     is_free: Callable[..., np.ndarray],
 ) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in a field's free part; fewer if almost none is free."""
+    """Draw points (nodes, 2), uniform in a field's free part; fewer if almost none is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
+        # One stream, x before y: a smaller roadmap has the first nodes of a larger one.
         points = low + (high - low) * rng.random((nodes, 2))
         free = np.concatenate([free, points[is_free(points)]])
         tries += nodes
@@ -164,23 +172,24 @@ def _draw_free_points(
 
 
 def _is_outside(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Whether points (n, 2) lie in no circle."""
+    """Tell which points (n, 2) lie in no circle."""
     return (np.hypot(*(points[:, None] - centres).transpose(2, 0, 1)) >= radii).all(axis=1)
 
 
 def _is_in_free_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Whether points (n, 2) of a grid lie in free cells."""
+    """Tell which points (n, 2) of a grid lie in free cells."""
     column, row = np.floor(grid.in_cells(points)).astype(int).T
     return ~grid.occupied[row, column]
 
 
 def _find_free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
-    """Whether the segments between two arrays of points (n, 2) touch no occupied cell."""
+    """Tell which segments between two arrays of points (n, 2) touch no occupied cell."""
     return _find_free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
 
 
 @compile_kernel
 def _find_free_legs(occupied, starts, targets):
+    """Tell which legs between two arrays of points (n, 2), in cells, touch no occupied cell."""
     free = np.empty(len(starts), dtype=np.bool_)
     for i in range(len(starts)):
         free[i] = is_free_leg(occupied, starts[i, 0], starts[i, 1], targets[i, 0], targets[i, 1])
@@ -188,8 +197,9 @@ def _find_free_legs(occupied, starts, targets):
 
 
 def _list_pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of different nodes, as two index arrays (pairs,), each pair once: all pairs, or those
-    in which one node is among the other's nearest.
+    """List pairs of different nodes, as two index arrays (pairs,), each pair once.
+
+    These are all pairs, or those in which one node is among the other's nearest.
     """
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
@@ -207,7 +217,7 @@ def _list_pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray,
 def _is_visible(
     starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray
 ) -> np.ndarray:
-    """Whether the segments between two arrays of points (n, 2) enter no circle; touching is
+    """Tell which segments between two arrays of points (n, 2) enter no circle; touching is
     allowed.
     """
     way = targets - starts
@@ -223,8 +233,10 @@ def _is_visible(
 
 @compile_kernel
 def _find_shortest_way(count, tails, heads, lengths):
-    """Dijkstra's algorithm along links (n,) of `count` nodes: the length of the shortest path from
-    node 0 to node 1, and its nodes; infinite and empty if they are not connected.
+    """Run Dijkstra's algorithm along links (n,) of `count` nodes.
+
+    Returns the length of the shortest path from node 0 to node 1, and its nodes; infinite and empty
+    if they are not connected.
     """
     links = len(tails)
     ends = np.concatenate((tails, heads))
@@ -237,6 +249,7 @@ def _find_shortest_way(count, tails, heads, lengths):
     heap = [(0.0, 0)]
     while len(heap) > 0 and heap[0][1] != 1:
         length, node = heapq.heappop(heap)
+        # An outdated entry: a shorter way to the node was found after it.
         if length > far[node]:
             continue
         k = newest[node]

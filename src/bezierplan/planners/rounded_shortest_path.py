@@ -4,6 +4,15 @@ At each obstacle corner around which the shortest path turns, a circle of the tu
 placed so that it contains the corner; the path is a string of straight legs and arcs pulled tight
 around these circles, each of which lies as deep behind its corner as the string pulls it. Corners
 too close together for two circles, such as those at the end of a wall, share one. The certified
+check then judges the path. The aims, in this order: as few corners as possible stay sharp; the
+tightest turn is as wide as can be, up to the radius that is asked; then the others are; and the
+path is no longer than allowed. Radii come from one fixed ladder, whatever is asked, so asking for
+more never gives less.
+
+At each obstacle corner around which the shortest path turns, a circle of the turning radius is
+placed so that it contains the corner; the path is a string of straight legs and arcs pulled tight
+around these circles, each of which lies as deep behind its corner as the string pulls it. Corners
+too close together for two circles, such as those at the end of a wall, share one. The certified
 check then judges the path. What is wanted, in this order: as few corners as possible stay sharp;
 the tightest turn is as wide as can be, up to the radius that is asked; then the others are; and the
 path is no longer than allowed. Radii come from one fixed ladder, whatever is asked, so asking for
@@ -68,11 +77,13 @@ _FREE, _BLOCKED, _CROWDED, _TOO_LONG = range(4)
 
 
 class Turns(NamedTuple):
-    """What the path turns around, from start to target, each (n,) or (n, 2).
+    """The turns of the path, from start to target, each (n,) or (n, 2).
 
-    corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the
-    obstacle, 0 for a corner. before, after: unit vectors, the path's direction before and after the
-    turn. side: 1 for a turn to the left, -1 to the right. angle: by how much it turns, in radians.
+    corner: the obstacle's corner, or the centre of a circular obstacle.
+    radius: the obstacle's, 0 for a corner.
+    before, after: unit vectors, the path's direction before and after the turn.
+    side: 1 for a turn to the left, -1 to the right.
+    angle: by how much it turns, in radians.
     """
 
     corner: np.ndarray
@@ -84,8 +95,12 @@ class Turns(NamedTuple):
 
 
 class Course(NamedTuple):
-    """What the path must suit: start and target (2, 2), the region's origin (2,), the length that
-    it may have at most; and how many paths have been tried (1,).
+    """Conditions that the path must suit.
+
+    ends: start and target (2, 2).
+    origin: (2,), the region's.
+    limit: the length that it may have at most.
+    trials: (1,) how many paths have been tried.
     """
 
     ends: np.ndarray
@@ -97,9 +112,13 @@ class Course(NamedTuple):
 class String(NamedTuple):
     """A string pulled tight around m circles, in arrays with room for one circle a turn.
 
-    crowd: the number of a circle that has no room beside its neighbours, or -1. count: m. first,
-    last: the turns that a circle contains. centres: (m, 2). radii: (m,). legs: (m + 1, 2, 2) ends
-    of the straight parts. sweeps: (m,) angles of the arcs, each in the sense of its turn.
+    crowd: the number of a circle that has no room beside its neighbours, or -1.
+    count: m.
+    first, last: the turns that a circle contains.
+    centres: (m, 2).
+    radii: (m,).
+    legs: (m + 1, 2, 2) ends of the straight parts.
+    sweeps: (m,) angles of the arcs, each in the sense of its turn.
     """
 
     crowd: int
@@ -113,7 +132,7 @@ class String(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """How round the path is. Without room its turns are tighter; extra columns tell."""
+    """How round the path is. Where there is no room its turns are tighter; extra columns tell."""
 
     turning_radius: Annotated[
         float,
@@ -174,7 +193,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 def _round(
     problem: Problem, bound: shortest_paths.Bound, settings: Settings
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return control points of the rounded path, the radius (n,) of each turn, and the number of
+    """Round the shortest path.
+
+    Returns control points of the rounded path, the radius (n,) of each turn, and the number of
     paths tried.
     """
     blocked = build_region(problem.workspace)
@@ -184,7 +205,8 @@ def _round(
         (1 + _SAME) * (1 + settings.excess) * bound.length,
         np.zeros(1, dtype=np.int64),
     )
-    # Around corners of a grown obstacle there may be less room than for a circle.
+    # Around corners of a grown obstacle there may be less room than for a circle; then each vertex
+    # of the shortest path is a turn of its own.
     for workspace in (problem.workspace, None):
         turns = find_turns(bound.points, workspace)
         radii, is_free = _widen(course, turns, blocked, bound.length, settings.turning_radius)
@@ -195,8 +217,9 @@ def _round(
 
 
 def find_turns(points: np.ndarray, workspace: object) -> Turns:
-    """Return the turns of a shortest path, a polyline (n, 2). Around circles and round corners the
-    vertices of an arc are one turn.
+    """Find the turns of a shortest path, a polyline (n, 2).
+
+    Around circles and round corners the vertices of an arc are one turn.
     """
     heading = _normalise(np.diff(points, axis=0))
     bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
@@ -227,8 +250,10 @@ def find_turns(points: np.ndarray, workspace: object) -> Turns:
 
 
 def _list_discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close
-    to it, in units, its vertices lie.
+    """List the discs around which a shortest path can bend.
+
+    Returns their centres (n, 2) and radii (n,), and how close to them, in units, the path's
+    vertices lie.
     """
     if isinstance(workspace, Circles):
         return workspace.centres, workspace.radii, _ON_CIRCLE
@@ -245,12 +270,13 @@ def _list_discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def _normalise(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 2) of length 1, but for vectors of length 0, which stay."""
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
 @compile_kernel
 def _widen(course, turns, region, shortest, wish):
-    """Return the radius (n,) of each turn, and whether the path is free."""
+    """Find the widest radii: the radius (n,) of each turn, and whether the path is free."""
     levels = _list_radii(min(wish, _TIGHTEST * shortest), min(wish, _WIDEST * shortest))
     top = len(levels) - 1
     radii = turns.radius.copy()
@@ -288,6 +314,7 @@ def _widen(course, turns, region, shortest, wish):
             return _raise(radii, turns, live, levels[top]), True
         above = top
         while above - k > 1:
+            # A bisection: here the path is free at k and not at `above`.
             middle = (k + above) // 2
             there = _try(course, turns, region, _raise(radii, turns, live, levels[middle]))
             if there[0] == _FREE:
@@ -304,7 +331,7 @@ def _widen(course, turns, region, shortest, wish):
 
 @compile_kernel
 def _list_radii(least, most):
-    """Return the radii to try, ascending: whole powers of one number, between two given ends."""
+    """List the radii to try, ascending: whole powers of one number, between two given ends."""
     if least == most:
         return np.array([most])
     low = math.floor(math.log(least) / math.log(_RUNG)) + 1
@@ -324,8 +351,10 @@ def _raise(radii, turns, live, level):
 
 @compile_kernel
 def _try(course, turns, region, radii):
-    """Try the path with some radii (n,): return what was found, and if it is blocked, the first and
-    the last of the turns that are to blame.
+    """Try the path with some radii (n,).
+
+    Returns what was found, and if it is blocked, the first and the last of the turns that are to
+    blame.
     """
     course.trials[0] += 1
     string = _shorten(course, turns, radii)
@@ -343,7 +372,7 @@ def _try(course, turns, region, radii):
         if at < np.inf and string.count == 0:
             return _BLOCKED, 0, -1
         if at < np.inf:
-            # An arc's own turns, or those at the nearer end of a leg.
+            # An arc's own turns are to blame, or those at the nearer end of a leg.
             circle = part[k] // 2 - (part[k] % 2 == 0 and at < 0.5)
             circle = min(max(circle, 0), string.count - 1)
             return _BLOCKED, string.first[circle], string.last[circle]
@@ -370,11 +399,11 @@ def _measure_string(string):
 
 @compile_kernel
 def _pull(course, turns, radii, patient):
-    """Return the string pulled tight around circles of some radii (n,). Circles that are in each
-    other's way join at once or, if patient, when the others have come to rest: either may be
-    shorter.
+    """Pull the string tight around circles of some radii (n,).
 
-    Each circle lies where the string's pull and its corners hold it: as far inwards as these allow.
+    Circles that are in each other's way join at once or, if patient, when the others have come to
+    rest: either may be shorter. Each circle lies where the string's pull and its corners hold it,
+        as far inwards as these allow.
     """
     n = len(radii)
     first, last, count = np.arange(n), np.arange(n), n
@@ -402,6 +431,8 @@ def _pull(course, turns, radii, patient):
             expected = turns.angle[first[k] : last[k] + 1].sum()
             cross = heading[k, 0] * heading[k + 1, 1] - heading[k, 1] * heading[k + 1, 0]
             dot = heading[k, 0] * heading[k + 1, 0] + heading[k, 1] * heading[k + 1, 1]
+            # Directions tell an arc's angle but for whole turns; the shortest path's turn there
+            # tells those.
             more = side[k] * math.atan2(cross, dot) - expected
             sweeps[k] = expected + (more + math.pi) % math.tau - math.pi
             if sweeps[k] < -_STRAIGHT and (wrong == crowd or sweeps[k] < sweeps[wrong]):
@@ -441,7 +472,7 @@ def _pull(course, turns, radii, patient):
 
 @allocation_free
 def _find_neighbour(centres, side, count, k):
-    """Return the nearer neighbour of a circle to the same side, or -1."""
+    """Find the nearer neighbour of a circle to the same side, or return -1."""
     nearest, gap = -1, np.inf
     for j in (k - 1, k + 1):
         if 0 <= j < count and side[j] == side[k]:
@@ -453,8 +484,9 @@ def _find_neighbour(centres, side, count, k):
 
 @allocation_free
 def _place(turns, first, last, radius, inward, centre):
-    """Put the centre (2,) of a circle as far inwards as the corners allow that it contains; return
-    whether it can contain them all.
+    """Put the centre (2,) of a circle as far inwards as the corners that it contains allow.
+
+    Returns whether it can contain them all.
     """
     for i in range(first, last + 1):
         depth = radius - turns.radius[i]
@@ -471,6 +503,7 @@ def _place(turns, first, last, radius, inward, centre):
             dy = turns.corner[j, 1] - turns.corner[i, 1]
             apart = math.hypot(dx, dy)
             one, other = radius - turns.radius[i], radius - turns.radius[j]
+            # Circles around the two corners do not meet: no centre has both distances.
             if apart == 0.0 or not abs(one - other) <= apart <= one + other:
                 continue
             share = 0.5 * (1.0 + (one * one - other * other) / (apart * apart))
@@ -487,8 +520,10 @@ def _place(turns, first, last, radius, inward, centre):
 
 @allocation_free
 def _separate_circles(ends, turns, first, last, count, reach, side, centres):
-    """Move circles apart that overlap the next one, of the other sense, or contain an end of the
-    path, as far as their corners allow: no leg of a string fits there.
+    """Move circles apart, as far as their corners allow, where no leg of a string fits between
+    them.
+
+    These are circles that overlap the next one, of the other sense, or contain an end of the path.
     """
     for _ in range(_PUSHES):
         largest = 0.0
@@ -526,7 +561,7 @@ def _hold(turns, first, last, radius, centre):
 
 @allocation_free
 def _contains_corners(turns, first, last, radius, x, y):
-    """Return whether a circle contains the corners of some turns."""
+    """Tell whether a circle contains the corners of some turns."""
     for i in range(first, last + 1):
         distance = math.hypot(x - turns.corner[i, 0], y - turns.corner[i, 1])
         if distance + turns.radius[i] > radius * (1.0 + _SAME):
@@ -536,12 +571,15 @@ def _contains_corners(turns, first, last, radius, x, y):
 
 @allocation_free
 def _join(ends, centres, signed_radii, count, legs, heading):
-    """Draw the legs between circles, and their directions; return the number of a circle that lies
-    so close to another one that no leg fits between them, or -1.
+    """Draw the legs between circles, and their directions.
+
+    Returns the number of a circle that lies so close to another one that no leg fits between them,
+    or -1.
     """
     crowd = -1
     for k in range(count + 1):
         if not _draw_leg(ends, centres, signed_radii, count, k - 1, k, legs[k], heading[k]):
+            # The last leg leads to no circle, so it names the one it comes from.
             crowd = min(k, count - 1)
     return crowd
 
@@ -549,8 +587,9 @@ def _join(ends, centres, signed_radii, count, legs, heading):
 @allocation_free
 def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
     """Draw the leg (2, 2) from circle k, or the start, to circle j, or the target, and its unit
-    direction (2,); return whether it fits. signed_radii: positive where
-    the string turns left.
+    direction (2,), and return whether it fits.
+
+    signed_radii: positive where the string turns left.
     """
     ax, ay = centres[k] if k >= 0 else ends[0]
     bx, by = centres[j] if j < count else ends[1]
@@ -574,8 +613,10 @@ def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
 
 @compile_kernel
 def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
-    """Return whether the leg past a circle, from the one before it to the next, leaves its corners
-    on the side to which the path turns there.
+    """Tell whether the leg past a circle leaves its corners on the side to which the path turns
+    there.
+
+    It leads from the circle before to the next.
     """
     leg, heading = np.empty((2, 2)), np.empty(2)
     if not _draw_leg(ends, centres, signed_radii, count, k - 1, k + 1, leg, heading):
@@ -589,8 +630,10 @@ def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
 
 @compile_kernel
 def _draw(course, turns, string):
-    """Return control points (3 k + 1, 2) of legs and arcs as cubic pieces, and what each piece (k,)
-    is: 2 i for the leg to circle i, 2 i + 1 for the arc around it.
+    """Draw legs and arcs as cubic pieces.
+
+    Returns their control points (3 k + 1, 2), and what each piece (k,) is: 2 i for the leg to
+    circle i, 2 i + 1 for the arc around it.
     """
     most = string.count * (_MOST_PIECES + 1) + 1
     points, part = np.empty((3 * most + 1, 2)), np.empty(most, dtype=np.int64)
@@ -606,6 +649,7 @@ def _draw(course, turns, string):
             continue
         arcs = math.ceil(string.sweeps[k] / _PIECE_ANGLE)
         angle = turns.side[string.first[k]] * string.sweeps[k] / arcs
+        # The cubic piece that touches its arc at both ends and in the middle.
         handle = 4 / 3 * math.tan(angle / 4)
         cosine, sine = math.cos(angle), math.sin(angle)
         centre_x, centre_y = string.centres[k]
@@ -618,6 +662,7 @@ def _draw(course, turns, string):
             along[2, 0], along[2, 1] = centre_x + x, centre_y + y
             part[pieces] = 2 * k + 1
             pieces += 1
+        # Rounding of the rotations must not leave a gap to the next leg.
         points[3 * pieces] = string.legs[k + 1, 0]
     points[3 * pieces] = course.ends[1]  # to the last bit
     return points[: 3 * pieces + 1], part[:pieces]

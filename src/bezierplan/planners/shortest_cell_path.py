@@ -16,9 +16,12 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """A polyline through the centres of free cells, from the cell of the start to that of the
-    target; a step may pass between two occupied cells that share only a corner. Its objective is
-    its length in cells times the side of a cell, or infinite if there is no path.
+    """Return the shortest path over the cells of a grid, a polyline through the centres of free
+    cells.
+
+    It leads from the cell of the start to that of the target. A step may pass between two occupied
+    cells that share only a corner. Its objective is its length in cells times the side of a cell,
+    or infinite if there is no path.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
@@ -33,8 +36,10 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
 
 
 def _drop_straight_vertices(points: np.ndarray) -> np.ndarray:
-    """A polyline (n, 2) without the vertices between two equal steps."""
+    """Return a polyline (n, 2) without the vertices between two equal steps."""
+    # A path within one cell still needs two points.
     steps = np.diff(points, axis=0)
+    # Steps between computed centres differ in their last bits.
     turns = np.any(np.abs(steps[1:] - steps[:-1]) > 1e-9, axis=1)
     return (
         points[np.concatenate([[True], turns, [True]])]

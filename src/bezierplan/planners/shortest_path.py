@@ -14,8 +14,8 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """The shortest path that touches obstacles but enters none; its objective is its length, in
-    units, or infinite if there is no path.
+    """Return the shortest path that touches obstacles but enters none; its objective is its length,
+    in units, or infinite if there is no path.
 
     Around circles it is a polyline at most 1e-6 units longer.
     """

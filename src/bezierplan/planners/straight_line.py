@@ -11,8 +11,9 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """The straight line; its objective is its length, in units. It ignores obstacles and considers
-    every path free.
+    """Return the straight line from start to target; its objective is its length, in units.
+
+    It ignores obstacles and claims every path to be free.
     """
     length = math.dist(problem.start, problem.target)
     path = Path("polyline", np.array([problem.start, problem.target]))

@@ -1,12 +1,12 @@
-"""Arrays that nobody can change: what planners get, and what results are judged by."""
+"""Arrays that nobody can change, such as planners get and results are judged by."""
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 
 def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
-    """Values as an array in rows whose memory is immutable, so that no flag makes it writable
-    again; a copy, unless it is one already.
+    """Return values as an array in rows whose memory is immutable, so that no flag makes it
+    writable again; a copy, unless it is one already.
 
     >>> centres = read_only([[1, 2]], float)
     >>> centres[0, 0] = 3
@@ -22,6 +22,7 @@ def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
     ):
         return values
     found = np.ascontiguousarray(values, dtype)
+    # Memory of bytes: an array of its own could be made writable again.
     return np.ndarray(np.shape(values), found.dtype, found.tobytes())
 
 

@@ -18,6 +18,7 @@ def occupy(occupied: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> None
     for k in range(len(radii)):
         x, y, radius = centres[k, 0], centres[k, 1], radii[k]
         for row in range(max(0, math.ceil(y - radius)), min(last, math.floor(y + radius)) + 1):
+            # Only the cells of the circle's bounding square.
             for column in range(
                 max(0, math.ceil(x - radius)), min(last, math.floor(x + radius)) + 1
             ):

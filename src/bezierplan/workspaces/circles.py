@@ -11,11 +11,15 @@ from bezierplan.workspaces.limits import Bounds
 
 @dataclass(frozen=True, eq=False)
 class Circles:
-    """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units.
-    radii: (n,) in units. unit: its name.
+    """Circles in a rectangle.
 
-    growth: what they were before they grew by a robot's radius, if they did. The arrays are
-    read-only.
+    bounds: lowest and highest x, lowest and highest y, in units.
+    centres: (n, 2) in units.
+    radii: (n,) in units.
+    unit: name of the unit of length.
+    growth: the circles before they grew by a robot's radius, if they did.
+
+    The arrays are read-only.
     """
 
     bounds: Bounds

@@ -19,7 +19,7 @@ Workspace = Grid | Circles | Polygons
 
 
 def load(description: dict, folder: Path) -> Workspace:
-    """The workspace of a description; its files are looked up in a folder.
+    """Load the workspace of a description; its files are looked up in a folder.
 
     Raises ValueError, naming the file or the key and what is expected.
     """
@@ -29,8 +29,9 @@ def load(description: dict, folder: Path) -> Workspace:
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
-    """The files from which a workspace is read. Raises ValueError if they cannot be told from the
-    description.
+    """List the files from which a workspace is read.
+
+    Raises ValueError if they cannot be told from the description.
     """
     from bezierplan.schema.model import find_names
     from bezierplan.workspaces.kinds import kind_of
@@ -43,13 +44,15 @@ def sources(description: dict, folder: Path) -> list[Path]:
 
 
 def write_json(workspace: Workspace) -> str:
-    """A workspace as text; `read_json` restores it bit by bit. A random field is stored as its
-    circles, whatever the number of its cells.
+    """Write a workspace as text; `read_json` restores it bit by bit.
+
+    A random field is stored as its circles, whatever the number of its cells.
     """
     return json.dumps(_build_content(workspace) | {"unit": workspace.unit})
 
 
 def _build_content(workspace: Workspace) -> dict:
+    """Build the content of a workspace's text."""
     if isinstance(workspace, Circles):
         table = np.column_stack([workspace.centres, workspace.radii]).tolist()
         content = {"kind": "circles", "bounds": workspace.bounds, "circles": table}
@@ -77,6 +80,7 @@ def _build_content(workspace: Workspace) -> dict:
 
 
 def _build_growth(content: dict) -> Growth | None:
+    """Restore how a workspace has grown, None if it has not."""
     if "grown" not in content:
         return None
     known = content["grown"]
@@ -85,7 +89,7 @@ def _build_growth(content: dict) -> Growth | None:
 
 
 def read_json(text: str) -> Workspace:
-    """The workspace that `write_json` wrote."""
+    """Read the workspace that `write_json` wrote."""
     content = json.loads(text)
     kind, unit, growth = content["kind"], content["unit"], _build_growth(content)
     if "circles" in content:
@@ -98,6 +102,7 @@ def read_json(text: str) -> Workspace:
         if kind == "polygons":
             return shapes
     cells = grid.from_lines(content["rows"], content["cell"], unit)
+    # Cells drawn from shapes have not grown themselves: the shapes have.
     return replace(
         cells,
         origin=tuple(content.get("origin", cells.origin)),

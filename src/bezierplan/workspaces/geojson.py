@@ -1,12 +1,12 @@
 """Polygons from GeoJSON (RFC 7946), as studies write it and as GIS programs do: no obstacle may be
-lost, so what is not understood is refused.
+lost, so a file that is not understood is refused.
 
 The file is a collection of features, one feature, or a bare geometry: Polygon, MultiPolygon, or a
-GeometryCollection of these. What has no `properties.role` is an obstacle. The border is the polygon
-with the role `border`, of any shape; without one, the bounding box of all obstacles with a margin,
-or the file's `bbox`. What lies outside of it is blocked, so obstacles are cut there. Features with
-the role `start` or `target` are ignored: problems define them. A third coordinate, the height, is
-dropped, and what has no geometry is skipped.
+GeometryCollection of these. A feature without `properties.role` is an obstacle. The border is the
+polygon with the role `border`, of any shape; without one, the bounding box of all obstacles with a
+margin, or the file's `bbox`. All that lies outside of it is blocked, so obstacles are cut there.
+Features with the role `start` or `target` are ignored: problems define them. A third coordinate,
+the height, is dropped, and features without a geometry are skipped.
 """
 
 import json
@@ -48,10 +48,11 @@ class Shape(NamedTuple):
 
 
 def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
-    """Polygons from the text of a GeoJSON file.
+    """Read polygons from the text of a GeoJSON file.
 
-    margin: between obstacles and border, in units, of a file without a border of its own. Warns of
-    what is skipped, and of obstacles that are cut at the border.
+    Warns of what is skipped, and of obstacles that are cut at the border.
+
+    margin: between obstacles and border, in units, of a file without a border of its own.
 
     Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry
     that is no polygon, coordinates out of range or in degrees, no border, a margin beside a border,
@@ -66,6 +67,7 @@ def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
         for number, feature in enumerate(_list_features(content))
         for shape in _read_shapes(number, feature)
     ]
+    # A file that names its projection does not mean degrees, small as its extent may be.
     if shapes and "crs" not in content:
         _refuse_degrees(shapes)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
@@ -85,12 +87,17 @@ def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
 
 
 def _read_content(text: str) -> dict[str, Any]:
+    """Read the text as JSON.
+
+    Raises ValueError for other text, and for coordinates that are said to be degrees.
+    """
     try:
         content = json.loads(text, object_pairs_hook=_read_object)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"not GeoJSON ({error})") from None
     if not isinstance(content, dict):
         raise ValueError("not GeoJSON: expected an object with a list of features")
+    # A key of older GeoJSON, which GIS programs still write.
     named = str(content.get("crs")).upper()
     if any(name in named for name in ("CRS84", "4326", "WGS84", "WGS 84")):
         raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths")
@@ -98,8 +105,9 @@ def _read_content(text: str) -> dict[str, Any]:
 
 
 def _refuse_degrees(shapes: list[Shape]) -> None:
-    """Raise ValueError for places that look like longitudes and latitudes, which RFC 7946 asks for:
-    within their limits, and far from the origin beside their extent.
+    """Raise ValueError for places that look like longitudes and latitudes, which RFC 7946 asks for.
+
+    They lie within their limits, and far from the origin beside their extent.
     """
     import shapely
 
@@ -115,7 +123,10 @@ def _refuse_degrees(shapes: list[Shape]) -> None:
 
 
 def _read_object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of a file. Raises ValueError for a key that is given twice: one would be lost."""
+    """Return an object of a file.
+
+    Raises ValueError for a key that is given twice: one would be lost.
+    """
     content: dict[str, Any] = {}
     for key, entry in pairs:
         if key in content:
@@ -125,7 +136,7 @@ def _read_object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _list_features(content: dict[str, Any]) -> list[Any]:
-    """The features of a file, which may also be one feature or a bare geometry."""
+    """List the features of a file, which may also be one feature or a bare geometry."""
     if "features" not in content:
         return [content if content.get("type") == "Feature" else {"geometry": content}]
     if not isinstance(content["features"], list):
@@ -134,7 +145,7 @@ def _list_features(content: dict[str, Any]) -> list[Any]:
 
 
 def _read_shapes(number: int, feature: Any) -> Iterator[Shape]:
-    """The polygons of a feature; none for a role that is not part of a workspace."""
+    """Yield the polygons of a feature; none for a role that is not part of a workspace."""
     import shapely
 
     if not isinstance(feature, dict) or not isinstance(feature.get("properties") or {}, dict):
@@ -162,6 +173,7 @@ def _read_shapes(number: int, feature: Any) -> Iterator[Shape]:
             f"{name}: geometry: expected a Polygon, a MultiPolygon, or a GeometryCollection of "
             "these, of rings of [x, y] or of [x, y, height]"
         )
+    # The file's own positions: shapely closes an open ring by itself.
     _check_rings(feature["geometry"], name)
     for polygon in polygons:
         check_numbers(shapely.get_coordinates(polygon), name)
@@ -170,6 +182,7 @@ def _read_shapes(number: int, feature: Any) -> Iterator[Shape]:
                 f"{name}: {shapely.is_valid_reason(polygon)}; expected a simple polygon"
             )
         check_thickness(shapely.minimum_clearance(polygon), f"{name}: thickness")
+        # Between repeated positions there is no angle.
         for ring in list_rings_of_polygon(shapely.remove_repeated_points(polygon)):
             ahead, back = np.roll(ring, -1, axis=0) - ring, np.roll(ring, 1, axis=0) - ring
             angles = np.abs(np.arctan2(cross(ahead, back), (ahead * back).sum(axis=1)))
@@ -195,8 +208,10 @@ def _check_rings(geometry: dict[str, Any], name: str) -> None:
 def _find_border(
     borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None
 ) -> tuple[Bounds, list[Shape]]:
-    """The bounds of a map, and as obstacles what lies within them and yet outside its border, which
-    may have any shape.
+    """Return the bounds of a map, and as obstacles all that lies within them and yet outside its
+    border, which may have any shape.
+
+    Raises ValueError for no border, several, or one beside a margin.
     """
     import shapely
 
@@ -233,6 +248,7 @@ def _check_gaps(obstacles: list[Shape], frame: "shapely.Polygon") -> None:
     import shapely
 
     shapes = np.array([shape.polygon for shape in obstacles], dtype=object)
+    # Near pairs only, of which there are few. A shape's gap to itself is 0, which is closed.
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
     gaps = shapely.distance(shapes[near[0]], shapes[near[1]])
     for number, gap in zip(near[0], gaps):

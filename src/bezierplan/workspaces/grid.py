@@ -25,13 +25,18 @@ ON_LINE = 1e-9
 class Grid:
     """Cells of a rectangle.
 
-    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name
-    of the unit of length. origin: x, y of the lower left corner, in units. shapes: those from
-    which the cells were drawn, if any: circles, which only pictures show, or polygons, which are
-    then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows,
-    columns) height of the ground in each cell, in units, where it is not flat; only some planners
-    use them. growth: what the grid was before its occupied cells grew by a robot's radius, if they
-    did. The arrays are read-only.
+    occupied: bool (rows, columns), row 0 at the bottom.
+    cell: side of a cell, in units.
+    unit: name of the unit of length.
+    origin: x, y of the lower left corner, in units.
+    shapes: the shapes from which the cells were drawn, if any: circles, which only pictures show,
+        or polygons, which are then the obstacles of the certified check and of the exact bounds
+        (`raster`).
+    heights: (rows, columns) height of the ground in each cell, in units, where it is not flat; only
+        some planners use them.
+    growth: the grid before its occupied cells grew by a robot's radius, if they did.
+
+    The arrays are read-only.
     """
 
     occupied: np.ndarray
@@ -43,29 +48,30 @@ class Grid:
     growth: Growth | None = None
 
     def __post_init__(self) -> None:
+        # A frozen dataclass sets its own fields only this way.
         object.__setattr__(self, "occupied", read_only(self.occupied, bool))
         if self.heights is not None:
             freeze(self, "heights")
 
     @property
     def bounds(self) -> Bounds:
-        """Lowest and highest x, lowest and highest y, in units."""
+        """Return the lowest and highest x, lowest and highest y, in units."""
         rows, columns = self.occupied.shape
         x, y = self.origin
         return x, x + columns * self.cell, y, y + rows * self.cell
 
     def in_cells(self, points: np.ndarray) -> np.ndarray:
-        """Points (..., 2) in units as multiples of a cell from the lower left corner: cell i
+        """Return points (..., 2) in units as multiples of a cell from the lower left corner: cell i
         reaches from i to i + 1.
         """
         return (points - np.array(self.origin)) / self.cell
 
     def in_units(self, points: np.ndarray) -> np.ndarray:
-        """The inverse of `in_cells`."""
+        """Return points (..., 2) in units; the inverse of `in_cells`."""
         return points * self.cell + np.array(self.origin)
 
     def cell_of(self, x: float, y: float) -> tuple[int, int] | None:
-        """Row and column of a point in units (song2016, eq. 8), or None outside the grid."""
+        """Return row and column of a point in units (song2016, eq. 8), or None outside the grid."""
         # Plain numbers: planners ask for one point after the other, and an array for each takes ten
         # times as long.
         x, y, (x_low, y_low) = float(x), float(y), self.origin
@@ -76,11 +82,13 @@ class Grid:
             return None
         column = math.floor((x - x_low) / self.cell + ON_LINE)
         row = math.floor((y - y_low) / self.cell + ON_LINE)
+        # The upper and the right border belong to the last cells.
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:
-        """Centre of a cell in units (song2016, eq. 7). Raises ValueError for a number outside the
-        grid.
+        """Return the centre of a cell in units (song2016, eq. 7).
+
+        Raises ValueError for a number outside the grid.
         """
         rows, columns = self.occupied.shape
         if not 0 <= number < rows * columns:
@@ -93,17 +101,22 @@ class Grid:
 
 
 def embed(occupied: np.ndarray) -> np.ndarray:
-    """The grid embedded in the smallest one whose numbers of rows and columns are powers of two,
-    with the surplus cells occupied (song2016, Remark 1).
+    """Embed a grid in the smallest one whose numbers of rows and columns are powers of two, with
+    the surplus cells occupied (song2016, Remark 1).
 
-    occupied: bool (rows, columns) -> bool (2**i, 2**j). Every binary cell number is then a cell.
+    occupied: bool (rows, columns) -> bool (2**i, 2**j).
+
+    Every binary cell number is then a cell.
+
+    >>> embed(np.zeros((2, 3), dtype=bool)).astype(int).tolist()
+    [[0, 0, 0, 1], [0, 0, 0, 1]]
     """
     surplus = [(0, (1 << (count - 1).bit_length()) - count) for count in occupied.shape]
     return np.pad(occupied, surplus, constant_values=True)
 
 
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
-    """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
+    """Build a grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
     Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for
     too many cells.
@@ -131,6 +144,7 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
                 "lines need the same number"
             )
     check_cells(len(lines), len(lines[0]))
+    # The text begins with the top row, the array with the bottom one.
     occupied = np.array(
         [np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)]
     )
@@ -138,8 +152,8 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
 
 
 def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
-    """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by
-    spaces, top row first.
+    """Read the heights (rows, columns) of a grid of that shape from text: one number per cell,
+    separated by spaces, top row first.
 
     Raises ValueError for a wrong number of rows or cells, and for anything that is not a finite
     number within the limits of coordinates.
@@ -156,5 +170,5 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
 
 
 def to_lines(grid: Grid) -> list[str]:
-    """The text of a grid, top row first."""
+    """Write a grid as text, top row first."""
     return ["".join("#" if occupied else "." for occupied in row) for row in grid.occupied[::-1]]

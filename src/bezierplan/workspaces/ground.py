@@ -31,13 +31,14 @@ MOST_NEIGHBOURS = 24
 
 
 class Ground(NamedTuple):
-    """The ground on which edges are measured, in cells. Cells are numbered row by row from the
-    bottom left.
+    """The ground on which edges are measured, in cells, numbered row by row from the bottom left.
 
-    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction:
-    that of the ground, at most 1 on most kinds of ground. closed: whether an edge through a common
-    corner of four cells meets the two next to it. met, energy: (cells, cells) for the edge from one
-    cell to another, the number of occupied cells it meets and its cost; or (0, 0).
+    occupied: bool (rows, columns).
+    heights: (rows, columns), or (0, 0) on flat ground.
+    friction: at most 1 on most kinds of ground.
+    closed: true if an edge through a common corner of four cells meets the two next to it.
+    encounters, energy: (cells, cells) for the edge from one cell to another, the number of occupied
+        cells it meets and its cost; or (0, 0).
     """
 
     occupied: np.ndarray
@@ -49,19 +50,22 @@ class Ground(NamedTuple):
 
 
 def build_ground(grid: Grid, friction: float, closed: bool = False) -> Ground:
-    """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do
-    not modify the result.
+    """Build the ground of a grid, with all its edges measured if it has at most `TABLE_CELLS`
+    cells.
+
+    Do not modify the result.
     """
     return _build_ground(*_build_key(grid, friction, closed))
 
 
 def find_least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
-    """The energy of `find_cheapest` on the ground of a grid, cached."""
+    """Return the energy of `find_cheapest` on the ground of a grid, cached."""
     return _find_least_energy(_build_key(grid, friction, closed), start, target)
 
 
 def _build_key(grid: Grid, friction: float, closed: bool) -> tuple:
-    """What determines the ground of a grid, so that it is built once per map."""
+    """Build a key of all that determines the ground of a grid, so that it is built once per map."""
+    # Arrays cannot be keys of a cache, bytes can.
     heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
     return (
         grid.occupied.shape,
@@ -82,6 +86,8 @@ def _build_ground(
     closed: bool,
     table_cells: int,
 ) -> Ground:
+    """Build the ground of a key, for `build_ground`."""
+    # Copies: for read-only arrays numba would compile the kernels once more.
     cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
     above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
     bare = Ground(
@@ -95,7 +101,9 @@ def _build_ground(
 
 @compile_kernel
 def _build_tables(ground):
+    """Measure the edges between all pairs of cells."""
     cells = ground.occupied.size
+    # Two bytes are enough for the cells of a map with a table, and save memory.
     encounters, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
     # Back and forth an edge meets the same cells, but climbs differently.
     for one in range(cells):
@@ -109,7 +117,7 @@ def _build_tables(ground):
 
 @compile_inline
 def count_obstacles_on(ground: Ground, start: int, end: int) -> int:
-    """Number of occupied cells that the edge between two cells meets, including the two (meledje,
+    """Count the occupied cells that the edge between two cells meets, including the two (meledje,
     eq. 3: beta).
     """
     if ground.encounters.size:
@@ -119,7 +127,7 @@ def count_obstacles_on(ground: Ground, start: int, end: int) -> int:
 
 @allocation_free
 def count_obstacles_along(path: np.ndarray, ground: Ground) -> int:
-    """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for
+    """Count the occupied cells that the edges of a path of cells (n,) meet; a cell counts once for
     every edge that meets it.
     """
     encounters = 0
@@ -130,8 +138,8 @@ def count_obstacles_along(path: np.ndarray, ground: Ground) -> int:
 
 @compile_inline
 def compute_edge_energy(ground: Ground, start: int, end: int) -> float:
-    """Cost of the edge from one cell to another: its length plus its climb divided by the friction
-    (meledje, eq. 2: epsilon).
+    """Return the cost of the edge from one cell to another: its length plus its climb divided by
+    the friction (meledje, eq. 2: epsilon).
     """
     if ground.energy.size:
         return ground.energy[start, end]
@@ -145,7 +153,7 @@ def compute_edge_energy(ground: Ground, start: int, end: int) -> float:
 
 @allocation_free
 def measure_distance(ground: Ground, start: int, end: int) -> float:
-    """Length of the edge between two cells."""
+    """Return the length of the edge between two cells."""
     columns = ground.occupied.shape[1]
     across, up = end % columns - start % columns, end // columns - start // columns
     return np.sqrt(float(across * across + up * up))
@@ -153,7 +161,7 @@ def measure_distance(ground: Ground, start: int, end: int) -> float:
 
 @allocation_free
 def _measure_edge(ground, start, end):
-    """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
+    """Count the occupied cells that an edge meets, and sum up its climbs from cell to cell.
 
     The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its
     next horizontal one after (2 j + 1) / (2 up); through a corner it leads from cell to cell
@@ -168,6 +176,7 @@ def _measure_edge(ground, start, end):
     i = j = 0
     while i < across or j < up:
         height = ground.heights[row, column] if ground.heights.size else 0.0
+        # Whole numbers: a corner is met exactly or not at all.
         ahead = (2 * i + 1) * up - (2 * j + 1) * across
         if ahead == 0 and ground.closed:
             encounters += int(ground.occupied[row, column + right]) + int(
@@ -181,18 +190,21 @@ def _measure_edge(ground, start, end):
             row += upward
         encounters += int(ground.occupied[row, column])
         if ground.heights.size:
+            # Only climbs cost energy; a descent gives none back.
             climb += max(ground.heights[row, column] - height, 0.0)
     return encounters, climb
 
 
 @lru_cache(maxsize=64)
 def _find_least_energy(key: tuple, start: int, target: int) -> float:
+    """Return the least energy of a path on the ground of a key."""
     return find_cheapest(_build_ground(*key), start, target)[0]
 
 
 def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
-    """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells;
-    infinite and empty if there is no such path.
+    """Find the path from cell to cell with the least energy that meets no obstacle.
+
+    Returns the energy, in cells, and the path's cells; infinite and empty if there is no such path.
     """
     energy, before = _find_cheapest(ground, start, target)
     if math.isinf(energy):
@@ -205,17 +217,20 @@ def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.nd
 
 @compile_kernel
 def _find_cheapest(ground, start, target):
-    """Minimum energy from start to target, and the cell before each cell on its way, by A* with the
-    straight distance.
+    """Run A* with the straight distance.
 
-    An edge is examined only if it would be an improvement: on a large map few are.
+    Returns the least energy from start to target, and the cell before each cell on its way. An edge
+    is examined only if it would be an improvement: on a large map few are.
     """
     cells = ground.occupied.size
     energy = np.full(cells, np.inf)
     before = np.full(cells, -1)
+    # An edge to an occupied cell meets it, so none leads there.
     done = ground.occupied.ravel().copy()
     energy[start] = 0.0
     while True:
+        # A search for the next cell takes no more than its edges, one to each cell: no heap is
+        # needed.
         here, least = -1, np.inf
         for cell in range(cells):
             if not done[cell] and energy[cell] + measure_distance(ground, cell, target) < least:
@@ -235,7 +250,7 @@ def _find_cheapest(ground, start, target):
 
 
 def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
-    """Centres (n, 2) of cells (n,), in units."""
+    """Return the centres (n, 2) of cells (n,), in units."""
     return np.array([grid.centre(cell) for cell in cells.tolist()]).reshape(-1, 2)
 
 
@@ -244,7 +259,7 @@ def list_free_neighbours(
     cell: int, ground: Ground, neighbourhood: int, neighbours: np.ndarray
 ) -> int:
     """Write the free cells among the neighbours of a cell (`Neighbourhood`), row by row from the
-    lower left, to `neighbours` (MOST_NEIGHBOURS,); returns their number.
+    lower left, to `neighbours` (MOST_NEIGHBOURS,), and return their number.
     """
     rows, columns = ground.occupied.shape
     own_row, own_column = divmod(cell, columns)

@@ -1,5 +1,5 @@
-"""What a map that has grown by a robot's radius remembers, so that a path of the robot's centre is
-also judged on the map itself.
+"""Memory of a map that has grown by a robot's radius, so that a path of the robot's centre is also
+judged on the map itself.
 """
 
 from typing import Any, NamedTuple
@@ -8,7 +8,10 @@ import numpy as np
 
 
 class Growth(NamedTuple):
-    """radius: by how much obstacles grew and the border shrank, in units. original: the map before.
+    """How a map has grown.
+
+    radius: by how much obstacles grew and the border shrank, in units.
+    original: the map before.
     centres: (n, 2) the corners of its obstacles around which the grown ones are round, in units.
     """
 
@@ -18,12 +21,12 @@ class Growth(NamedTuple):
 
 
 def find_growth(workspace: Any) -> Growth | None:
-    """By how much a map has grown and from which; None for a map as it was given."""
+    """Return by how much a map has grown and from which; None for a map as it was given."""
     shapes = getattr(workspace, "shapes", None)
     return (shapes.growth if shapes else None) or workspace.growth
 
 
 def original(workspace: Any) -> Any:
-    """The map before it grew."""
+    """Return the map before it grew."""
     growth = find_growth(workspace)
     return growth.original if growth else workspace

@@ -25,10 +25,14 @@ class Lattice(NamedTuple):
     """The lattice of a problem, for kernels.
 
     neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not
-    allowed. around: (cells, 8) the same without any corner rule, -1 only outside the grid and for
-    occupied cells. occupied: bool (cells,). row, column: (cells,). start, target: cells. diagonal:
-    length of a diagonal step, others count 1. ends: total distance of start and target from the
-    centres of their cells, 0 if they coincide.
+        allowed.
+    around: (cells, 8) the same without any corner rule, -1 only outside the grid and for occupied
+        cells.
+    occupied: bool (cells,).
+    row, column: (cells,).
+    start, target: cells.
+    diagonal: length of a diagonal step, others count 1.
+    ends: total distance of start and target from the centres of their cells, 0 if they coincide.
     """
 
     neighbours: np.ndarray
@@ -45,7 +49,7 @@ class Lattice(NamedTuple):
 def build_grid_lattice(
     grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: str
 ) -> Lattice:
-    """The lattice of a grid with the cells of start and target, both (x, y) in units.
+    """Build the lattice of a grid with the cells of start and target, both (x, y) in units.
 
     Raises ValueError if one of them lies outside the grid, or in an occupied cell.
     """
@@ -61,6 +65,7 @@ def build_grid_lattice(
             )
             raise ValueError(f"{name}: {point}: {where}; expected a point of a free cell")
         cells.append(cell[0] * columns + cell[1])
+        # A path from a place to itself has no length.
         if start != target:
             ends += math.dist(point, grid.centre(cells[-1])) / grid.cell
     row, column = np.divmod(np.arange(rows * columns), columns)
@@ -79,12 +84,13 @@ def build_grid_lattice(
 
 
 def list_neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
-    """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed
-    and from occupied cells.
+    """List the cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not
+    allowed and from occupied cells.
 
     occupied: bool (rows, columns).
     """
     walled = np.pad(occupied, 1, constant_values=True)
+    # The frame spares a test for steps beyond the border.
     row, column = np.argwhere(~occupied).T + 1
     # The two cells next to a step; for a step along an axis these are the cells that it leaves and
     # enters.
@@ -100,7 +106,7 @@ def list_neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
 
 
 def _list_free_cells_around(occupied: np.ndarray) -> np.ndarray:
-    """The free cells around each cell, free or occupied: (cells, 8) numbers, or -1 for none."""
+    """List the free cells around each cell, free or not: (cells, 8) numbers, or -1 for none."""
     number = np.pad(
         np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)),
         1,
@@ -120,12 +126,13 @@ def compute_distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray
 
 @compile_kernel
 def _compute_distances(walls, row, column, steps):
-    """Return the `compute_distances` within a frame of occupied cells (Dijkstra)."""
+    """Run Dijkstra's algorithm within a frame of occupied cells, for `compute_distances`."""
     far = np.full(walls.shape, np.inf)
     far[row, column] = 0.0
     heap = [(0.0, row, column)]
     while len(heap) > 0:
         length, row, column = heapq.heappop(heap)
+        # An outdated entry: a shorter way to the cell was found after it.
         if length > far[row, column]:
             continue
         for k in range(len(steps)):
@@ -140,9 +147,9 @@ def _compute_distances(walls, row, column, steps):
 def list_points(
     grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray
 ) -> np.ndarray:
-    """Start, the centres of cells (n,), and target, in units: (n + 2, 2).
+    """List start, the centres of cells (n,), and target, in units: (n + 2, 2).
 
-    Fewer where start or target is itself a centre; no cells if start equals target.
+    There are fewer where start or target is itself a centre; no cells if start equals target.
     """
     if start == target:
         return np.array([start, target])

@@ -33,6 +33,7 @@ def check_numbers(values: np.ndarray, where: str) -> None:
     """Raise ValueError, beginning with the location, unless all values are finite and at most
     `LARGEST` in absolute value.
     """
+    # Written so that nan fails as well.
     wrong = values[~(np.abs(values) <= LARGEST)]
     if wrong.size:
         raise ValueError(
@@ -48,7 +49,10 @@ def check_cells(rows: int, columns: int) -> None:
 
 
 def bounds_of(entries: Iterable[float]) -> Bounds:
-    """The bounds that a description gives. Raises ValueError as `check_bounds`."""
+    """Read the bounds that a description gives.
+
+    Raises ValueError like `check_bounds`.
+    """
     x_low, x_high, y_low, y_high = map(float, entries)
     bounds = x_low, x_high, y_low, y_high
     check_bounds(bounds)

@@ -34,11 +34,13 @@ cell is given.
 def describe(
     file: Path, *, cells: bool = False, unit: str | None = None, **options: Any
 ) -> dict[str, Any]:
-    """The description of a map file as a workspace of a study (config/README.md).
+    """Describe a map file as a workspace of a study (config/README.md).
 
-    cells: whether polygons become a grid. options: keys of the kind of workspace; None is what is
-    not given. Raises ValueError, naming the option, for a value that is wrong or does nothing on
-    this kind of map, and for an unknown kind of file.
+    cells: true if polygons become a grid.
+    options: keys of the kind of workspace; None stands for a key that is not given.
+
+    Raises ValueError, naming the option, for a value that is wrong or does nothing on this kind of
+    map, and for an unknown kind of file.
     """
     kind = KINDS.get(file.suffix.lower())
     if kind is None:
@@ -72,7 +74,7 @@ def describe(
 
 
 def read(file: Path, description: dict[str, Any], robot_radius: float | None = None) -> Workspace:
-    """The map of a file and its description, for a robot of a radius, in units.
+    """Read the map of a file and its description, for a robot of a radius, in units.
 
     Raises ValueError, which names file or option.
     """
@@ -80,15 +82,17 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     robot.check_radius(radius)
     if description["kind"] != "raster":
         return robot.grow(_load(file, description), radius)
-    # It grows before it becomes cells.
+    # It grows before it becomes cells, by the description's rule: `grow` itself knows only
+    # `overlap`.
     polygons = robot.grow(_load(file, description | {"kind": "polygons"}), radius)
     assert isinstance(polygons, Polygons)  # by its kind
     return raster.from_polygons(polygons, float(description["cell"]), description["rule"])
 
 
 def _load(file: Path, description: dict[str, Any]) -> Workspace:
-    """The map of a file. Raises ValueError, beginning with the option `margin` or with the file as
-    it was given.
+    """Load the map of a file.
+
+    Raises ValueError, beginning with the option `margin` or with the file as it was given.
     """
     try:
         return files.load(description, file.parent)

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 def circles(
     description: dict, walls: Bounds, centres: np.ndarray, velocities: np.ndarray, radii: np.ndarray
 ) -> MovingCircles:
-    """Circles that move within walls: centres and velocities (n, 2), radii (n,). Raises ValueError
-    for a radius that is too small.
+    """Build circles that move within walls: centres and velocities (n, 2), radii (n,).
+
+    Raises ValueError for a radius that is too small.
     """
     from bezierplan.workspaces.worlds import MovingCircles
 
@@ -37,8 +38,10 @@ def movement(
     ends: np.ndarray,
     radius: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and velocities (count, 2) of circles of a radius, from random places in random
-    directions. ends: (2, 2).
+    """Draw centres and velocities (count, 2) of circles of a radius, from random places in random
+    directions.
+
+    ends: (2, 2).
 
     Raises ValueError if no free place is found.
     """

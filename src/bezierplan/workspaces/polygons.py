@@ -15,11 +15,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Polygons:
-    """bounds: lowest and highest x, lowest and highest y, in units.
+    """Polygons in a rectangle.
 
+    bounds: lowest and highest x, lowest and highest y, in units.
     obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2)
-    in units, not closed. unit: name of the unit of length. growth: what they were before they grew
-    by a robot's radius, if they did. The arrays are read-only.
+        in units, not closed.
+    unit: name of the unit of length.
+    growth: the polygons before they grew by a robot's radius, if they did.
+
+    The arrays are read-only.
     """
 
     bounds: Bounds
@@ -34,7 +38,7 @@ class Polygons:
         object.__setattr__(self, "obstacles", obstacles)
 
     def union(self) -> "shapely.Geometry":
-        """All obstacles as one shape."""
+        """Join all obstacles to one shape."""
         import shapely
 
         return shapely.union_all(
@@ -42,7 +46,7 @@ class Polygons:
         )
 
     def free(self) -> "shapely.Geometry":
-        """What is within the border and in no obstacle."""
+        """Return all that is within the border and in no obstacle."""
         import shapely
 
         left, right, bottom, top = self.bounds
@@ -50,14 +54,14 @@ class Polygons:
 
 
 def list_parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
-    """The polygons of a shape, without points and lines at which others touch."""
+    """List the polygons of a shape, without points and lines at which others touch."""
     import shapely
 
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon)]
 
 
 def list_rings(shape: "shapely.Geometry") -> list[np.ndarray]:
-    """The boundary of a shape's polygons, not closed: rings (n, 2), the inside on their left."""
+    """List the boundary of a shape's polygons, open rings (n, 2) with the inside on their left."""
     import shapely
 
     turned = map(shapely.geometry.polygon.orient, list_parts(shape))
@@ -65,7 +69,7 @@ def list_rings(shape: "shapely.Geometry") -> list[np.ndarray]:
 
 
 def list_rings_of_polygon(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
-    """The rings (n, 2) of a polygon, the outer one first, each without its last position."""
+    """List the rings (n, 2) of a polygon, the outer one first, each without its last position."""
     import shapely
 
     return tuple(
@@ -74,10 +78,10 @@ def list_rings_of_polygon(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
 
 
 def normalise(vectors: np.ndarray) -> np.ndarray:
-    """Vectors (n, 2) of length 1."""
+    """Return vectors (n, 2) of length 1."""
     return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Cross products (n,) of vectors (n, 2), positive where b lies to the left of a."""
+    """Return the cross products (n,) of vectors (n, 2), positive where b lies to the left of a."""
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

@@ -18,22 +18,27 @@ MOST_DRAWS = 10_000
 
 
 def field(description: dict, problem: dict, name: str) -> Grid:
-    """The field of a problem, drawn from names and numbers alone: problems that differ in any of
-    them get unrelated fields.
+    """Draw the field of a problem from names and numbers alone: problems that differ in any of them
+    get unrelated fields.
 
-    description: radius, that of all circles as a share of the side, or of radius_side, if that is a
-    number; clear_ends, the cells that stay free between a circle and start or target; nested,
-    whether fields that differ in their numbers of circles alone have the first circles in common;
-    and unit. problem: side (N); start; target; obstacles, the number of circles; and layout, the
-    number of the field. name: that of study and workspace. Centres are uniform in the square from 0
-    to N; those too close to start or target are redrawn. Circles may overlap. A field in which no
-    path of free cells leads from start to target is redrawn as a whole.
+    Centres are uniform in the square from 0 to N; a centre too close to start or target is redrawn.
+    Circles may overlap. A field in which no path of free cells leads from start to target is
+    redrawn as a whole.
+
+    description: radius, every circle's as a share of the side, or of radius_side, if that is a
+        number; clear_ends, the cells that stay free between a circle and start or target; nested,
+        whether fields that differ in their numbers of circles alone have the first circles in
+        common; and unit.
+    problem: side (N); start; target; obstacles, the number of circles; and layout, the number of
+        the field.
+    name: "study/workspace".
 
     Raises ValueError, naming the key, if start or target is not a cell of the field, or if no field
     can be found.
     """
     side = problem["side"]
     nested = description.get("nested", False)
+    # Nested fields have one seed for all numbers of circles.
     count = () if nested else (problem["obstacles"],)
     rng = generator(name, side, *problem["start"], *problem["target"], *count, problem["layout"])
     square = 0.0, side, 0.0, side
@@ -59,8 +64,9 @@ def field(description: dict, problem: dict, name: str) -> Grid:
 
 
 def end_cells(grid: Grid, problem: dict) -> list[tuple[int, int]]:
-    """Cells (row, column) of a problem's start and target. Raises ValueError, naming the key, if
-    one of them is not on the map.
+    """Return the cells (row, column) of a problem's start and target.
+
+    Raises ValueError, naming the key, if one of them is not on the map.
     """
     cells = []
     for key in ("start", "target"):
@@ -82,7 +88,10 @@ def draw_centres(
     ends: np.ndarray,
     least: float,
 ) -> np.ndarray:
-    """Centres (count, 2) within bounds, none of them closer to an end than the least distance."""
+    """Draw centres (count, 2) within bounds, none of them closer to an end than the least distance.
+
+    Raises ValueError if no free place is found.
+    """
     low, high = np.reshape(bounds, (2, 2)).T
     centres = np.empty((count, 2))
     for i in range(count):
@@ -99,7 +108,8 @@ def draw_centres(
 
 
 def from_circles(circles: Circles) -> Grid:
-    """The field of some circles; their bounds are its square, from 0 to N."""
+    """Build the field of some circles; their bounds are its square, from 0 to N."""
+    # Here, since a start that only reads descriptions needs no kernels.
     from bezierplan.workspaces.cells_in_circles import occupy
 
     count = round(circles.bounds[1]) + 1
@@ -109,7 +119,7 @@ def from_circles(circles: Circles) -> Grid:
 
 
 def is_connected(occupied: np.ndarray, start: tuple[int, int], target: tuple[int, int]) -> bool:
-    """Whether free cells lead from one cell (row, column) to another; a diagonal step may pass
+    """Tell whether free cells lead from one cell (row, column) to another; a diagonal step may pass
     between two occupied cells.
     """
     from scipy.ndimage import label

@@ -23,14 +23,17 @@ _SAME_LINE = 1e-6
 
 
 def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
-    """The cells of a map of polygons. cell: side of a cell, in units.
+    """Build the cells of a map of polygons.
 
-    rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over
-    free cells is free; or if its centre lies in one or on its edge (`centre`), so that a path may
-    cut up to half a cell into a wall. A cell whose centre is outside the border is occupied.
+    cell: side of a cell, in units.
+    rule: `overlap` or `centre`, see below.
 
-    Raises ValueError for cells that are too small or too many. Warns of obstacles that
-    occupy no cell.
+    With `overlap` a cell is occupied if its inside overlaps an obstacle, so a path over free cells
+    is free; with `centre` if its centre lies in one or on its edge, so a path may cut up to half a
+    cell into a wall. A cell whose centre is outside the border is occupied.
+
+    Raises ValueError for cells that are too small or too many. Warns of obstacles that occupy no
+    cell.
     """
     import shapely
 
@@ -39,6 +42,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
     columns, rows = (round((high - low) / cell) + 1 for low, high in ((left, right), (bottom, top)))
     check_cells(rows, columns)
     x, y = left + cell * np.arange(columns), bottom + cell * np.arange(rows)
+    # Where a side is no multiple of a cell, the last centres may lie beyond the border.
     occupied = (y[:, None] > top + _SAME_LINE * cell) | (x > right + _SAME_LINE * cell)
     for number, (outer, *holes) in enumerate(polygons.obstacles):
         shape = shapely.Polygon(outer, holes)
@@ -50,6 +54,8 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
         centre_x, centre_y = np.meshgrid(x[near[1]], y[near[0]])
         shapely.prepare(shape)
         if rule == "overlap":
+            # A little less than the cell: a wall along a grid line overlaps only the cells on its
+            # own side.
             half = (0.5 - _SAME_LINE) * cell
             met = shapely.intersects(
                 shape,
@@ -64,7 +70,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
 
 
 def find_overlap(polygons: Polygons, grid: Grid) -> np.ndarray:
-    """Which cells of a grid overlap an obstacle or the outside of the border of polygons: bool
+    """Tell which cells of a grid overlap an obstacle or the outside of the border of polygons: bool
     (rows, columns).
     """
     import shapely

@@ -61,17 +61,23 @@ _STRAIGHT = 1e-9
 
 @lru_cache(maxsize=4)
 def grow(workspace: Workspace, radius: float) -> Workspace:
-    """The map for the centre of a robot of a radius, in units, with its original as `growth`.
+    """Return the map for the centre of a robot of a radius, in units, with its original as
+    `growth`.
 
-    Of cells it is a grid with the grown polygons as `shapes`, in which the cells that these overlap
-    are occupied.
+    A grid keeps its cells, with the grown polygons as `shapes`: the cells that these overlap are
+    occupied.
 
     Raises ValueError for a radius that is no number, 0 < radius < `SMALLEST_FEATURE`, or so large
     that nothing is free; and for a map that has grown before.
+
+    >>> room = Circles((0.0, 4.0, 0.0, 3.0), np.array([[2.0, 1.5]]), np.array([0.5]), "m")
+    >>> grow(room, 0.25).radii.tolist(), grow(room, 0.25).bounds
+    ([0.75], (0.25, 3.75, 0.25, 2.75))
     """
     check_radius(radius)
     if radius == 0:
         return workspace
+    # A second growth would take the grown map for the original.
     if before := find_growth(workspace):
         raise ValueError(
             f"robot_radius: {radius:g}: "
@@ -96,8 +102,9 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
 
 
 def choose_suitable(workspace: Workspace, kinds: Collection[str] | None) -> Workspace:
-    """A grown map for a planner that serves some kinds of workspace, None for all: the polygons
-    themselves, unless it needs cells.
+    """Choose the form of a grown map for a planner: the polygons themselves, unless it needs cells.
+
+    kinds: the kinds of workspace that the planner serves, None for all.
     """
     if (
         isinstance(workspace, Grid)
@@ -110,6 +117,7 @@ def choose_suitable(workspace: Workspace, kinds: Collection[str] | None) -> Work
 
 def check_radius(radius: float) -> None:
     """Raise ValueError unless a robot can have this radius."""
+    # Written so that nan fails as well.
     if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
         raise ValueError(
             f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}"
@@ -117,6 +125,10 @@ def check_radius(radius: float) -> None:
 
 
 def _shrink(bounds: Bounds, radius: float) -> Bounds:
+    """Return bounds that are smaller by the radius on each side.
+
+    Raises ValueError if nothing is left.
+    """
     left, right, bottom, top = bounds
     if min(right - left, top - bottom) < 2 * radius + SMALLEST_FEATURE:
         raise _describe_nothing_free(radius)
@@ -124,6 +136,7 @@ def _shrink(bounds: Bounds, radius: float) -> Bounds:
 
 
 def _describe_nothing_free(radius: float) -> ValueError:
+    """Return the error for a radius with which no place is free."""
     return ValueError(
         f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its "
         "border; expected a smaller one"
@@ -136,7 +149,7 @@ def _grow_polygons(
     bounds: Bounds,
     radius: float,
 ) -> Polygons:
-    """Polygons around everything closer to a shape than the radius."""
+    """Build polygons around everything closer to a shape than the radius."""
     import shapely
 
     reach = radius - SLACK
@@ -145,19 +158,22 @@ def _grow_polygons(
     inside = shapely.box(limits[0], limits[2], limits[1], limits[3])
     if inside.difference(outline).area == 0:
         raise _describe_nothing_free(radius)
+    # A part beyond the shrunken border blocks nothing.
     parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
     growth = Growth(radius, workspace, read_only(centres, float))
     return Polygons(limits, tuple(map(list_rings_of_polygon, parts)), workspace.unit, growth)
 
 
 def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
-    """A union without what rounding leaves between shapes that share a side: holes without room for
-    a point, and points that repeat.
+    """Remove from a union what rounding leaves between shapes that share a side.
+
+    These are holes without room for a point, and points that repeat.
     """
     import shapely
 
     parts = []
     for part in shapely.get_parts(union):
+        # The area of a narrow hole over its length is half its width.
         holes = [
             hole for hole in part.interiors if shapely.Polygon(hole).area > TOLERANCE * hole.length
         ]
@@ -166,7 +182,7 @@ def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
 
 
 def _find_outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry", np.ndarray]:
-    """A shape and what is closer to it, and its convex corners (n, 2).
+    """Return a shape with all that is closer to it than the reach, and its convex corners (n, 2).
 
     It is the union of the shape, of a rectangle outside each side, and of a sector at each convex
     corner, which begins and ends at the rectangles' own corners. A buffer of GEOS would simplify
@@ -195,7 +211,10 @@ def _find_outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geo
 def _build_sector(
     corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarray, turn: float
 ) -> np.ndarray:
-    """A corner, and the tangents (n, 2) around its arc, from one unit vector to another."""
+    """Build a corner's sector: the corner, and the tangents (n, 2) around its arc, from one unit
+    vector to another.
+    """
+    # Tangents meet at 1 / cos(half) of the radius: at most 1 + ARC_EXCESS.
     parts = math.ceil(turn / (2 * math.acos(1 / (1 + ARC_EXCESS))))
     half = 0.5 * turn / parts
     angles = math.atan2(first[1], first[0]) + half * (2 * np.arange(parts) + 1)
@@ -204,8 +223,8 @@ def _build_sector(
 
 
 def _list_corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and
-    after each.
+    """List the corners (n, 2) of a shape, which lies to the left of its boundary, and the ones
+    before and after each.
     """
     every = [np.empty((0, 2)), *list_rings(shape)]
     corners, before, after = (
@@ -215,7 +234,7 @@ def _list_corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np
 
 
 def _join_cells(grid: Grid) -> "shapely.Geometry | None":
-    """The occupied cells as one shape; None if it has more than `MOST_CORNERS` corners."""
+    """Join the occupied cells to one shape; None if it has more than `MOST_CORNERS` corners."""
     import shapely
 
     cells = np.pad(grid.occupied, 1)
@@ -223,6 +242,7 @@ def _join_cells(grid: Grid) -> "shapely.Geometry | None":
     diagonal = (around == 2) & (cells[:-1, :-1] == cells[1:, 1:])
     if ((around % 2 == 1) | diagonal).sum() > MOST_CORNERS:
         return None
+    # A rectangle for each run of cells in a row: there are far fewer of them than cells.
     row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
     _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
     # Whole numbers: exact.
@@ -231,8 +251,8 @@ def _join_cells(grid: Grid) -> "shapely.Geometry | None":
 
 
 def by_cells(grid: Grid, radius: float) -> Grid:
-    """A grid in which every cell that comes closer than the radius to an occupied one or to the
-    border is occupied as well.
+    """Return a grid in which each cell closer than the radius to an occupied one or to the border
+    is occupied too.
     """
     from scipy.ndimage import binary_dilation, distance_transform_edt
 

@@ -35,8 +35,9 @@ Unknown = Literal["occupied", "free"]
 
 
 def _is_origin(entry: Any) -> bool:
-    """Whether it is x, y, and a yaw of nearly 0 or of nan, which map_saver also writes."""
+    """Tell whether an entry is x, y, and a yaw of nearly 0 or nan, which map_saver also writes."""
     try:
+        # Written so that a yaw of nan passes.
         return (
             all(map(is_number, entry[:2]))
             and len(entry) == 3
@@ -61,23 +62,29 @@ class Content(Model):
 
 
 def read(file: Path, folder: Path, unit: str, unknown: Unknown = "occupied") -> Grid:
-    """The grid of a map_server YAML file, one cell per pixel.
+    """Read the grid of a map_server YAML file, one cell per pixel.
 
-    folder: where the image must lie. Raises ValueError, naming the key and what is expected.
+    folder: where the image must lie.
+
+    Raises ValueError, naming the key and what is expected.
     """
     return _build_grid(find_image(file, folder), _read_content(file), unit, unknown)
 
 
 def read_image(file: Path, resolution: float, unit: str, unknown: Unknown = "occupied") -> Grid:
-    """The grid of an image alone, with its lower left corner at 0, 0; dark pixels are occupied.
+    """Read the grid of an image alone, with its lower left corner at 0, 0; dark pixels are
+    occupied.
 
-    resolution: side of a pixel, in units. Raises ValueError, naming what is wrong.
+    resolution: side of a pixel, in units.
+
+    Raises ValueError, naming what is wrong.
     """
     content = Content(image=file.name, resolution=resolution, origin=[0.0, 0.0, 0.0])
     return _build_grid(file, content, unit, unknown)
 
 
 def _build_grid(image: Path, content: Content, unit: str, unknown: Unknown) -> Grid:
+    """Build the grid of an image and of the keys that say how to read it."""
     check_thickness(content.resolution, "resolution:")
     x, y, _ = content.origin
     occupied = _find_occupied(image, content, unknown)
@@ -87,13 +94,15 @@ def _build_grid(image: Path, content: Content, unit: str, unknown: Unknown) -> G
 
 
 def find_image(file: Path, folder: Path) -> Path:
-    """The image of a map_server YAML file, which lies in a folder. Raises ValueError if there is
-    none.
+    """Find the image of a map_server YAML file, which lies in a folder.
 
     ROS's map_saver writes the path at which it saved the image. On another machine, the image of
     that name beside the YAML file is meant.
+
+    Raises ValueError if there is none.
     """
     name = _read_content(file).image
+    # A Windows path splits at both kinds of slash.
     for image in (file.parent / name, file.parent / PureWindowsPath(name).name):
         if image.is_file() and image.resolve().is_relative_to(folder.resolve()):
             return image
@@ -101,12 +110,14 @@ def find_image(file: Path, folder: Path) -> Path:
 
 
 def _read_content(file: Path) -> Content:
-    """The keys of a map_server YAML file, checked; others are ignored, unless one looks like a key
-    that is misspelt.
+    """Read and check the keys of a map_server YAML file.
+
+    Others are ignored, unless one looks like a key that is misspelt.
     """
     content, keys = checked.parse(read_text(file), file.name), Content.model_fields
     if isinstance(content, dict):
         for key in content.keys() - keys:
+            # Programs add keys of their own, but a misspelt one would be ignored without a word.
             if difflib.get_close_matches(key.lower(), keys, cutoff=0.7):
                 raise checked.Fault(f"{key}: unknown key{checked.suggest_closest(key, keys)}")
         content = {key: entry for key, entry in content.items() if key in keys}
@@ -117,12 +128,13 @@ def _read_content(file: Path) -> Content:
 
 
 def _find_occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
-    """Which pixels count as occupied: bool (rows, columns), the bottom row first."""
+    """Tell which pixels count as occupied: bool (rows, columns), the bottom row first."""
     from PIL import Image
 
     try:
         with Image.open(file) as image:
             columns, rows = image.size
+            # The size stands in the header: a larger image is not decoded.
             if columns * rows <= MOST_CELLS:
                 light, known = _measure_shades(image)
     except Exception as error:  # of a damaged file each format raises another one
@@ -140,13 +152,15 @@ def _find_occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray
         free |= ~known
         if content.mode == "trinary":
             free |= share <= content.occupied_thresh
+    # The first row of an image is the top.
     return ~free[::-1]
 
 
 def _measure_shades(image: Any) -> tuple[np.ndarray, np.ndarray]:
-    """How light each pixel is (rows, columns), from 0 to 1, the mean of its colours; and whether it
-    is known, bool: unless it is transparent.
+    """Return how light each pixel is (rows, columns), from 0 to 1, the mean of its colours; and
+    whether it is known, bool: unless it is transparent.
     """
+    # 16 bits a pixel, without colours or transparency.
     if image.mode.startswith("I"):
         light = np.asarray(image, dtype=float) / 65535.0
         return light, np.ones(light.shape, dtype=bool)

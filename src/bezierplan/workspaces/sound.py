@@ -1,4 +1,4 @@
-"""Maps that a program makes: what readers of files check as they read, in one place."""
+"""Maps that a program makes: all checks that readers of files do as they read, in one place."""
 
 from functools import lru_cache
 
@@ -32,6 +32,7 @@ def check_map(workspace: Workspace) -> None:
 
 
 def _check_rings(obstacles: tuple[tuple[np.ndarray, ...], ...]) -> None:
+    """Raise ValueError, naming the obstacle, for rings that are no simple polygon."""
     import shapely
 
     for number, rings in enumerate(obstacles):

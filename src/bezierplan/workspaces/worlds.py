@@ -23,13 +23,18 @@ from bezierplan.workspaces.limits import Bounds
 class MovingCircles:
     """Circles that move in straight lines and are reflected where their centres meet a wall.
 
-    bounds: lowest and highest x, lowest and highest y of the robot's field; walls: likewise, of the
-    centres; in units. centres: (n, 2) at step 0, in units; velocities: (n, 2), in units per step;
-    radii: (n,), in units. view: what planners see, the field's cells, of side 1 (`random_field`),
-    or the circles. pace: in units per step. end: in steps.
-
     At whole steps the reflected positions are exact. From one step to the next each circle moves
     uniformly along a straight line.
+
+    bounds: lowest and highest x, lowest and highest y of the robot's field, in units.
+    walls: likewise, of the centres.
+    centres: (n, 2) at step 0, in units.
+    velocities: (n, 2), in units per step.
+    radii: (n,), in units.
+    view: planners see the field's cells, of side 1 (`random_field`), or the circles.
+    pace: in units per step.
+    end: in steps.
+    unit: name of the unit of length.
     """
 
     bounds: Bounds
@@ -46,27 +51,33 @@ class MovingCircles:
         freeze(self, "centres", "velocities", "radii")
 
     def at(self, step: int) -> np.ndarray:
-        """Centres (n, 2) at a whole step, in units."""
+        """Return the centres (n, 2) at a whole step, in units."""
         return positions(self.centres, self.velocities, np.array(self.walls), step)
 
     def workspace(self, step: int, margin: float = 0.0) -> Grid | Circles:
-        """What planners see at a step: the circles, grown by a margin in units, or the cells that
-        they occupy.
+        """Return what planners see at a step: the circles, grown by a margin in units, or the cells
+        that they occupy.
         """
         circles = self.obstacles(step, margin)
         if self.view == "circles":
             return circles
+        # A field of cells has its centres within the walls; the robot's bounds reach half a cell
+        # farther.
         return random_field.from_circles(replace(circles, bounds=self.walls))
 
     def obstacles(self, step: int, margin: float = 0.0) -> Circles:
-        """What the robot must not enter at a step; grown by a margin in units."""
+        """Return what the robot must not enter at a step; grown by a margin in units."""
         return Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
 
 
 @dataclass(frozen=True)
 class ChangingCells:
-    """Grids that follow each other. maps: the first one, and the one that begins at each moment.
-    moments: (changes,) ascending, in steps. pace: in units per step. end: in steps.
+    """Grids that follow each other.
+
+    maps: the first one, and the one that begins at each moment.
+    moments: (changes,) ascending, in steps.
+    pace: in units per step.
+    end: in steps.
     """
 
     maps: tuple[Grid, ...]
@@ -79,19 +90,19 @@ class ChangingCells:
 
     @property
     def unit(self) -> str:
-        """The name of the unit of length."""
+        """Return the name of the unit of length."""
         return self.maps[0].unit
 
     def index(self, time: float) -> int:
-        """The number of the map in force at a time; at a moment of change, of the new one."""
+        """Return the number of the map in force at a time; at a moment of change, the new one's."""
         return int(np.searchsorted(self.moments, time, side="right"))
 
     def workspace(self, time: float, margin: float = 0.0) -> Grid:
-        """What planners see at a time. Cells have no margin."""
+        """Return what planners see at a time; cells have no margin."""
         return self.maps[self.index(time)]
 
     def obstacles(self, time: float) -> Grid:
-        """What the robot must not enter at a time."""
+        """Return what the robot must not enter at a time."""
         return self.maps[self.index(time)]
 
 
@@ -100,8 +111,13 @@ World = MovingCircles | ChangingCells
 
 @compile_kernel
 def positions(centres, velocities, walls, step):
-    """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and
-    highest x, lowest and highest y.
+    """Return the centres (n, 2) after some steps of uniform motion with reflection at walls.
+
+    walls: (4,) lowest and highest x, lowest and highest y.
+
+    >>> walls = np.array([0.0, 4.0, 0.0, 3.0])
+    >>> positions(np.array([[1.0, 1.0]]), np.array([[0.0, 3.0]]), walls, 1).tolist()
+    [[1.0, 2.0]]
     """
     moved = np.empty_like(centres)
     for axis in range(2):
@@ -114,13 +130,14 @@ def positions(centres, velocities, walls, step):
 
 
 def to_json(world: World) -> str:
-    """A world as text; `from_json` restores it bit by bit."""
+    """Write a world as text; `from_json` restores it bit by bit."""
     if isinstance(world, ChangingCells):
         content = {
             "maps": [files.write_json(each) for each in world.maps],
             "moments": world.moments.tolist(),
         }
     else:
+        # Python writes the shortest decimals that restore a number's every bit.
         table = np.column_stack([world.centres, world.velocities, world.radii]).tolist()
         content = {
             "bounds": world.bounds,
@@ -133,7 +150,7 @@ def to_json(world: World) -> str:
 
 
 def from_json(text: str) -> World:
-    """The world that `to_json` wrote."""
+    """Read the world that `to_json` wrote."""
     content = json.loads(text)
     if "maps" in content:
         maps = tuple(map(_read_grid, content["maps"]))
@@ -153,7 +170,7 @@ def from_json(text: str) -> World:
 
 
 def _read_grid(text: str) -> Grid:
-    """The map that `files.write_json` wrote."""
+    """Read the map that `files.write_json` wrote."""
     workspace = files.read_json(text)
     assert isinstance(workspace, Grid)  # the cells of a world change
     return workspace

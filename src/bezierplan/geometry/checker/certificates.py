@@ -1,5 +1,5 @@
-"""What the searches ask about a region: whether a point is blocked, whether a hull is free, and how
-deep they are.
+"""The questions of the searches about a region: whether a point is blocked, whether a hull is free,
+and how deep they are.
 
 Each kind of region has its own answers. The overloads at the end select them by its type.
 """
@@ -43,24 +43,25 @@ _RING_MARGIN = 0.01
 
 
 def is_blocked(x, y, region):
-    """Whether a point is certainly blocked: its depth is above the tolerance."""
+    """Tell whether a point is certainly blocked: its depth is above the tolerance."""
     return _IS_BLOCKED[type(region)](x, y, region)
 
 
 def is_free(points, region):
-    """Whether the curve of some control points is certified free. May be false for a free curve,
-    but not indefinitely as the curve is halved.
+    """Tell whether the curve of some control points is certified free.
+
+    The answer may be false for a free curve, but not indefinitely as the curve is halved.
     """
     return _IS_FREE[type(region)](points, region)
 
 
 def measure_depth(x, y, region):
-    """Depth of a point in the blocked region, 0 outside."""
+    """Return the depth of a point in the blocked region, 0 outside."""
     return _DEPTH_AT[type(region)](x, y, region)
 
 
 def bound_depth(points, region):
-    """Upper bound of the depth of the curve of some control points."""
+    """Return an upper bound of the depth of the curve of some control points."""
     return _DEPTH_BOUND[type(region)](points, region)
 
 
@@ -70,8 +71,9 @@ def bound_depth(points, region):
 
 @allocation_free
 def _find_element(x: float, cell: float, last: int) -> int:
-    """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in
-    a cell; the outside is 0 and `last`.
+    """Return the index in the doubled grid of a coordinate.
+
+    It is odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`.
     """
     line = round(x / cell)
     index = 2 * math.floor(x / cell) + 2
@@ -82,8 +84,8 @@ def _find_element(x: float, cell: float, last: int) -> int:
 
 @allocation_free
 def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
-    """Lowest and highest coordinate of the cells that touch an element: one cell for even indices,
-    two for odd ones.
+    """Return the lowest and highest coordinate of the cells that touch an element: one cell for
+    even indices, two for odd ones.
     """
     low = -_FAR if index <= 1 else (index // 2 - 1) * cell
     high = _FAR if index >= last - 1 else ((index + 1) // 2) * cell
@@ -94,7 +96,7 @@ def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
 def _count_blocked_elements(
     counts: np.ndarray, bottom: int, top: int, left: int, right: int
 ) -> int:
-    """Number of blocked elements in a range of the doubled grid, both ends inclusive."""
+    """Count the blocked elements in a range of the doubled grid, both ends inclusive."""
     return (
         counts[top + 1, right + 1]
         - counts[bottom, right + 1]
@@ -104,6 +106,7 @@ def _count_blocked_elements(
 
 
 def _is_blocked_in_grid(x, y, region):
+    """Tell whether a point's element of the doubled grid is blocked."""
     rows, columns = region.blocked.shape
     return region.blocked[
         _find_element(y, region.cell, rows - 1), _find_element(x, region.cell, columns - 1)
@@ -111,6 +114,9 @@ def _is_blocked_in_grid(x, y, region):
 
 
 def _is_free_in_grid(points, region):
+    """Tell whether a hull is free, by its bounding box or by its own direction as separating
+    axis.
+    """
     rows, columns = region.blocked.shape
     cell = region.cell
     x_low, x_high, y_low, y_high = bound_box(points)
@@ -142,6 +148,8 @@ def _is_free_in_grid(points, region):
             rectangle_left, rectangle_right = _find_sides(column, cell, columns - 1)
             if x_high <= rectangle_left + reach or x_low >= rectangle_right - reach:
                 continue
+            # The box was tested above, so the axis across the hull is left: it separates a slanted
+            # hull.
             x = 0.5 * (rectangle_left + rectangle_right) - points[0, 0]
             y = 0.5 * (rectangle_bottom + rectangle_top) - points[0, 1]
             middle = along_x * y - along_y * x
@@ -160,7 +168,7 @@ def _is_free_in_grid(points, region):
 
 @allocation_free
 def measure_distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins) -> float:
-    """Distance of a point from the nearest edge."""
+    """Return the distance of a point from the nearest edge."""
     return _bound_distance_to_edges(x, y, x, y, edges, bins)
 
 
@@ -168,11 +176,10 @@ def measure_distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins)
 def _bound_distance_to_edges(
     x: float, y: float, other_x: float, other_y: float, edges: np.ndarray, bins: Bins
 ) -> float:
-    """The least of all edges' larger distance from two points.
+    """Return the least of all edges' larger distance from two points.
 
-    Bins are looked at in square rings around the first point. What lies beyond a ring is at least
-    as far from the point, or from the place among the bins that is nearest to it, as the ring is
-    wide.
+    Bins are looked at in square rings around the first point. Beyond a ring, edges are at least as
+    far from the point, or from the place among the bins that is nearest to it, as the ring is wide.
     """
     middle_column, _ = columns_between(x, x, bins)
     middle_row, _ = rows_near(y, y, bins)
@@ -199,6 +206,7 @@ def _bound_distance_to_edges(
 
 
 def _measure_depth_by_edges(x, y, region):
+    """Return a point's depth as its distance from the boundary."""
     return (
         measure_distance_to_edges(x, y, region.edges, region.bins)
         if is_blocked(x, y, region)
@@ -207,8 +215,10 @@ def _measure_depth_by_edges(x, y, region):
 
 
 def _bound_depth_by_edges(points, region):
-    """No blocked point is deeper than its distance from any edge, which along a chord is greatest
-    at one of its ends.
+    """Return an upper bound of a curve's depth by the boundary edges.
+
+    No blocked point is deeper than its distance from any edge, which along a chord is greatest at
+    one of its ends.
     """
     largest = _bound_distance_to_edges(
         points[0, 0], points[0, 1], points[-1, 0], points[-1, 1], region.edges, region.bins
@@ -222,10 +232,10 @@ def _bound_depth_by_edges(points, region):
 
 @allocation_free
 def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
-    """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein
-    coefficient of the squared distance.
+    """Return a lower bound of the distance of a curve to a point.
 
-    The point is subtracted first, so that the error stays relative to the distance.
+    It is the square root of the smallest Bernstein coefficient of the squared distance. The point
+    is subtracted first, so that the error stays relative to the distance.
     """
     n = len(points) - 1
     least = math.inf
@@ -242,6 +252,7 @@ def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
 
 
 def _measure_depth_in_circles(x, y, region):
+    """Return a point's depth: the largest beyond the border or in a disc."""
     left, right, bottom, top = region.bounds
     depth = math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
     for k in range(len(region.radii)):
@@ -252,10 +263,12 @@ def _measure_depth_in_circles(x, y, region):
 
 
 def _is_blocked_in_circles(x, y, region):
+    """Tell whether a point's depth is above the tolerance."""
     return measure_depth(x, y, region) > TOLERANCE
 
 
 def _is_free_in_circles(points, region):
+    """Tell whether a hull keeps within the border and clear of all discs."""
     x_low, x_high, y_low, y_high = bound_box(points)
     left, right, bottom, top = region.bounds
     reach = 2.0 * TOLERANCE
@@ -277,6 +290,8 @@ def _is_free_in_circles(points, region):
         across = along_x * y - along_y * x
         outside_along = max(0.0, along_low - along, along - along_high)
         outside_across = max(0.0, across_low - across, across - across_high)
+        # The rectangle around the hull clears most discs; the Bernstein form costs the square of
+        # the degree.
         if math.hypot(outside_along, outside_across) >= radius:
             continue
         if bound_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]) < radius:
@@ -285,11 +300,13 @@ def _is_free_in_circles(points, region):
 
 
 def _bound_depth_in_circles(points, region):
+    """Return an upper bound of a curve's depth beyond the border and in discs."""
     bound = 0.0
     left, right, bottom, top = region.bounds
     for x, y in points:
         bound = max(bound, math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top)))
     for k in range(len(region.radii)):
+        # No disc is deeper than its radius.
         if region.radii[k] > bound:
             bound = max(
                 bound,
@@ -304,8 +321,10 @@ def _bound_depth_in_circles(points, region):
 
 
 def _is_blocked_in_polygons(x, y, region):
-    """A point is in free space if a ray from it crosses the boundary an odd number of times; only
-    edges near the point and its ray are looked at.
+    """Tell whether a point is certainly blocked.
+
+    It is in free space if a ray from it crosses the boundary an odd number of times; only edges
+    near the point and its ray are looked at.
     """
     bins, edges = region.bins, region.edges
     row = int((y - bins.low[1]) // bins.side)
@@ -339,7 +358,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 @allocation_free
 def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Smallest and largest distance of control points from an edge's line, positive where free."""
+    """Return the range of distances of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
     for x, y in points:
@@ -350,7 +369,7 @@ def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
 
 
 def _is_free_in_polygons(points, region):
-    """A hull is free if it begins in free space and does not cross the boundary.
+    """Tell whether a hull is free: it begins in free space and does not cross the boundary.
 
     Edges away from the hull do not matter, whichever side it is on. The others form chains of
     consecutive edges: see `_pass_chain`.
@@ -394,7 +413,9 @@ def _is_free_in_polygons(points, region):
 
 @allocation_free
 def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
-    """Whether an edge may touch a hull with a bounding box, and a range across its direction."""
+    """Tell whether an edge may touch a hull with a bounding box, and a range across its
+    direction.
+    """
     x_low, x_high, y_low, y_high = hull_box
     ax, ay, bx, by = region.edges[e]
     if (
@@ -417,7 +438,8 @@ def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, regi
 
 @allocation_free
 def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high) -> int:
-    """Number of edges of a chain of touched edges if a hull passes it on the free side, or 0.
+    """Return the number of edges of a chain of touched edges if a hull passes it on the free side,
+    or 0.
 
     It does if it lies on the free side of all lines of the chain. Where the blocked region is
     convex at the chain's corners, one of these lines is enough, or any line between hull and chain

@@ -15,7 +15,9 @@ _SHORTEST_INTERVAL = 1e-11
 
 @compile_kernel
 def find_first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
-    """Piece number plus parameter of the first collision (infinite if there is none), and the
+    """Find the first collision of a path.
+
+    Returns the piece's number plus the parameter in it (infinite if there is no collision), and the
     number of intervals examined.
 
     Depth first, left half first: everything before the current interval is certified free.
@@ -40,6 +42,8 @@ def find_first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int
                 points[-1, 0], points[-1, 1], region
             ):
                 return piece + begin[top] + width[top], intervals
+            # Both tests are undecided only close to the boundary: what is as small as the tolerance
+            # is let pass, no deeper than twice that.
             elif measure_size(points) <= TOLERANCE:
                 top -= 1
             else:

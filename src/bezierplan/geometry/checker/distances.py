@@ -1,5 +1,5 @@
-"""How deep a colliding path lies in the blocked region, and how close a free one comes to it:
-branch and bound over halved pieces.
+"""Depth of a colliding path in the blocked region, and clearance of a free one: branch and bound
+over halved pieces.
 """
 
 import math
@@ -34,7 +34,9 @@ DEPTH_TOLERANCE = 1e-6
 @compile_kernel
 def find_largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
     """Return the largest depth of a path, to a relative `DEPTH_TOLERANCE` or `choose_resolution` of
-    the pieces, by branch and bound, starting with the piece of its first collision.
+    the pieces.
+
+    Branch and bound, starting with the piece of its first collision: all before it is free.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
@@ -64,13 +66,13 @@ def find_largest_depth(pieces: np.ndarray, region: Region, collision_at: float) 
 def find_least_clearance(
     pieces: np.ndarray, edges: np.ndarray, bins: Bins, centres: np.ndarray, radii: np.ndarray
 ) -> float:
-    """Minimum distance of a free path to edges (n, 4), with their bins, and discs, to
-    `CLEARANCE_TOLERANCE`, by branch and bound.
+    """Return the least distance of a free path to edges (n, 4), with their bins, and discs, to
+    `CLEARANCE_TOLERANCE`.
 
-    The curve is no nearer to an edge than its chord is, minus the largest deviation of the curve
-    from its chord. A piece is compared with all discs, and with the edges in bins that are no
-    farther away than the minimum distance found. Obstacles that are farther away are dropped for
-    both halves: they are swapped to positions beyond those that the halves examine.
+    Branch and bound: the curve is no nearer to an edge than its chord is, minus the largest
+    deviation of the curve from its chord. A piece is compared with all discs, and with the edges in
+    bins that are no farther away than the least distance found. Obstacles that are farther away are
+    dropped for both halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     counts = np.empty(STACK, dtype=np.int64)
@@ -128,8 +130,9 @@ def _find_edges_within(
     piece_of: np.ndarray,
     edges: np.ndarray,
 ) -> int:
-    """The number of edges in the bins within reach of a piece's chord, a few more rather than less;
-    their numbers go into `edges`.
+    """Find the edges in the bins within reach of a piece's chord, a few more rather than less.
+
+    Their numbers go into `edges`; returns how many there are.
 
     piece_of: the last piece to which an edge was near, which keeps it from being counted twice.
     """
@@ -158,7 +161,7 @@ def _measure_clearance_of_point(
     centres: np.ndarray,
     radii: np.ndarray,
 ) -> float:
-    """Minimum distance of a point to some of the obstacles, by number: edges, then discs."""
+    """Return the least distance of a point to some obstacles, by number: edges, then discs."""
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)
@@ -182,8 +185,9 @@ def _bound_clearance(
     centres: np.ndarray,
     radii: np.ndarray,
 ) -> float:
-    """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at
-    most `bulge`.
+    """Return a lower bound of the distance of a curve to an obstacle.
+
+    A curve deviates from its chord by at most `bulge`.
     """
     ax, ay = points[0, 0], points[0, 1]
     bx, by = points[-1, 0], points[-1, 1]
@@ -198,6 +202,7 @@ def _bound_clearance(
         )
     x, y = centres[disc, 0], centres[disc, 1]
     from_chord = measure_distance_to_segment(x, y, ax, ay, bx, by) - bulge
+    # Near a disc the Bernstein form is the sharper of the two bounds; a straight curve needs none.
     if bulge > 0.0:
         from_chord = max(from_chord, bound_distance_to_centre(points, x, y))
     return max(0.0, from_chord - radii[disc])
@@ -207,6 +212,7 @@ def _bound_clearance(
 def _measure_distance_of_segments(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray
 ) -> float:
+    """Return the distance of two segments, 0 if they cross."""
     if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
         return 0.0
     return min(
@@ -219,5 +225,5 @@ def _measure_distance_of_segments(
 
 @allocation_free
 def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
-    """Twice the signed area of a triangle, positive if it is counterclockwise."""
+    """Return twice the signed area of a triangle, positive if it is counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -59,8 +59,10 @@ def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int)
     """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left
     half is put on it.
 
-    stack: (`STACK`, n, 2) control points of the parts. begin, width: (`STACK`,) the parameter
-    interval of each part. All are changed.
+    All arguments but `top` are changed.
+
+    stack: (`STACK`, n, 2) control points of the parts.
+    begin, width: (`STACK`,) the parameter interval of each part.
     """
     halve(stack[top], stack[top + 1])
     width[top] *= 0.5
@@ -71,7 +73,7 @@ def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int)
 
 @allocation_free
 def measure_size(points: np.ndarray) -> float:
-    """Largest distance of a control point from the first one."""
+    """Return the largest distance of a control point from the first one."""
     largest = 0.0
     for i in range(1, len(points)):
         largest = max(largest, math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]))
@@ -80,8 +82,8 @@ def measure_size(points: np.ndarray) -> float:
 
 @allocation_free
 def choose_resolution(points: np.ndarray) -> float:
-    """Size in units below which halving no longer separates control points: `ROUNDING`, or more for
-    large coordinates.
+    """Return the size in units below which halving no longer separates control points: `ROUNDING`,
+    or more for large coordinates.
     """
     largest = 0.0
     for i in range(len(points)):
@@ -91,8 +93,8 @@ def choose_resolution(points: np.ndarray) -> float:
 
 @allocation_free
 def choose_direction(points: np.ndarray) -> tuple[float, float]:
-    """Unit vector along a hull: the direction of its chord or, where the chord is short, towards
-    the point farthest from the first one.
+    """Return a unit vector along a hull: the direction of its chord or, where the chord is short,
+    towards the point farthest from the first one.
     """
     farthest = len(points) - 1
     longest = measure_size(points)
@@ -113,7 +115,7 @@ def choose_direction(points: np.ndarray) -> tuple[float, float]:
 
 @allocation_free
 def measure_range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Smallest and largest component of control points in a direction, relative to the first."""
+    """Return the range of control points' components along (x, y), relative to the first one."""
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y
@@ -124,7 +126,7 @@ def measure_range_along(points: np.ndarray, x: float, y: float) -> tuple[float, 
 
 @allocation_free
 def bound_box(points: np.ndarray) -> tuple[float, float, float, float]:
-    """Lowest and highest x, lowest and highest y of the control points."""
+    """Return the lowest and highest x, lowest and highest y of the control points."""
     left = right = points[0, 0]
     bottom = top = points[0, 1]
     for i in range(1, len(points)):
@@ -139,7 +141,7 @@ def bound_box(points: np.ndarray) -> tuple[float, float, float, float]:
 def measure_distance_to_segment(
     x: float, y: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Distance of the point (x, y) from the segment from (ax, ay) to (bx, by)."""
+    """Return the distance of the point (x, y) from the segment from (ax, ay) to (bx, by)."""
     dx = bx - ax
     dy = by - ay
     square = dx * dx + dy * dy
@@ -153,7 +155,7 @@ def measure_distance_to_segment(
 
 @allocation_free
 def measure_bulge(points: np.ndarray) -> float:
-    """Largest distance of a control point from the chord."""
+    """Return the largest distance of a control point from the chord."""
     largest = 0.0
     for i in range(1, len(points) - 1):
         distance = measure_distance_to_segment(

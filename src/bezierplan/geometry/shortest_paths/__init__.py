@@ -20,7 +20,7 @@ __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_pat
 
 
 def shortest_path(problem: Problem) -> Bound:
-    """The shortest path from start to target.
+    """Find the shortest path from start to target.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def shortest_path(problem: Problem) -> Bound:
 
 
 def least_length(bound: Bound) -> float:
-    """The minimum length of any path that the certified check calls free.
+    """Return the least length of any path that the certified check calls free.
 
     Parameters
     ----------

@@ -37,7 +37,9 @@ _BESIDE = 1e-4
 class _Scene(NamedTuple):
     """Start and target, as circles without a radius, and circles in the way.
 
-    centres: (n, 2), radii: (n,), start and target first. bounds: (4,) of the border.
+    centres: (n, 2), start and target first.
+    radii: (n,).
+    bounds: (4,) of the border.
     """
 
     centres: np.ndarray
@@ -48,8 +50,10 @@ class _Scene(NamedTuple):
 class _Nodes(NamedTuple):
     """Start, target, and ends of tangents.
 
-    circles: (n,) the circle of the scene that a node lies on. angles: (n,) its angle there. names:
-    (n,) ascending numbers. points: (n, 2).
+    circles: (n,) the circle of the scene that a node lies on.
+    angles: (n,) its angle there.
+    names: (n,) ascending numbers.
+    points: (n, 2).
     """
 
     circles: np.ndarray
@@ -61,8 +65,9 @@ class _Nodes(NamedTuple):
 class _Graph(NamedTuple):
     """Nodes, and the free tangents and arcs between them.
 
-    ends: (e, 2) nodes; that of an arc lead counterclockwise. sweeps: (e,) angles of arcs, 0 of
-    tangents. lengths: (e,).
+    ends: (e, 2) nodes; an arc leads counterclockwise from the first to the second.
+    sweeps: (e,) angles of arcs, 0 of tangents.
+    lengths: (e,).
     """
 
     nodes: _Nodes
@@ -72,7 +77,9 @@ class _Graph(NamedTuple):
 
 
 def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
-    """The shortest path among some of the circles is the shortest among all if it is clear of the
+    """Find the shortest path around circles.
+
+    The shortest path among some of the circles is the shortest among all if it is clear of the
     others. So the search begins without circles and adds those that the path meets, until there are
     no more.
 
@@ -108,7 +115,7 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
 
 
 def _find_shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound:
-    """The shortest path from node 0 to node 1."""
+    """Find the shortest path from node 0 to node 1."""
     path = dijkstra_path(_build_matrix(graph))
     near = np.flatnonzero(np.isin(graph.ends, path).all(axis=1))
     edge_of = {tuple(ends): edge for edge, ends in zip(near, graph.ends[near].tolist())}
@@ -126,7 +133,7 @@ def _find_shortest(graph: _Graph, scene: _Scene, blocked: CircleRegion) -> Bound
 
 
 def _build_graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
-    """The free tangents and arcs of some circles (m,) of a scene, ascending.
+    """Build the free tangents and arcs of some circles (m,) of a scene, ascending.
 
     whole: cut the arcs at the ends of all their tangents, and not only of the free ones.
     """
@@ -148,8 +155,10 @@ def _build_graph(circles: np.ndarray, scene: _Scene, whole: bool) -> _Graph:
 
 
 def _find_ties(graph: _Graph) -> tuple[float, np.ndarray]:
-    """The length of the shortest way from node 0 to node 1, and which edges are part of it or of
-    one that is as long but for `_TIED`: bool (e,).
+    """Return the length of the shortest way from node 0 to node 1, and which edges (e,) are part of
+    it.
+
+    Edges of a way that is as long but for `_TIED` are among them.
     """
     from scipy.sparse.csgraph import dijkstra
 
@@ -162,7 +171,7 @@ def _find_ties(graph: _Graph) -> tuple[float, np.ndarray]:
 
 
 def _build_matrix(graph: _Graph) -> "csr_array":
-    """The lengths of edges by their ends."""
+    """Return the lengths of edges by their ends, as a sparse matrix."""
     from scipy.sparse import coo_array
 
     count = len(graph.nodes.names)
@@ -173,7 +182,7 @@ def _build_matrix(graph: _Graph) -> "csr_array":
 
 @compile_kernel
 def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Which circles do not lie inside another; of equal circles only the first: bool (n,)."""
+    """Tell which circles (n,) do not lie inside another; the first of equal circles does not."""
     outer = np.ones(len(radii), dtype=np.bool_)
     for i in range(len(radii)):
         for j in range(len(radii)):
@@ -186,7 +195,7 @@ def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
 
 
 def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
-    """Start, target, and the ends of all tangents at some circles (m,), ascending."""
+    """List start, target, and the ends of all tangents at some circles (m,), ascending."""
     parts = [(np.zeros(2), np.arange(2), scene.centres[:2])]
     for circle in circles.tolist():
         # Python's own `hypot` is a last bit more exact than that of kernels.
@@ -202,10 +211,11 @@ def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
 def _list_nodes_at(
     circle: int, distances: np.ndarray, scene: _Scene
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
+    """List the ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
 
     distances: (m,) of the circles' centres. A name tells the circle, the other one or the end to
-    which the tangent leads, whether it crosses the line between their centres, and its side of it.
+        which the tangent leads, whether it crosses the line between their centres, and its side of
+        it.
     """
     centres, radii = scene.centres, scene.radii
     count = 0
@@ -247,7 +257,7 @@ def _list_nodes_at(
 
 
 def _list_tangents(nodes: _Nodes, count: int) -> np.ndarray:
-    """The pairs of nodes that a tangent joins, free or not, among so many circles: (t, 2)."""
+    """List the pairs of nodes that a tangent joins, free or not, among so many circles: (t, 2)."""
     other, kind = nodes.names // 4 % count, nodes.names % 4
     name = np.where(other < 2, other, 4 * (other * count + nodes.circles) + kind)
     number = np.arange(len(name))
@@ -259,7 +269,7 @@ def _list_tangents(nodes: _Nodes, count: int) -> np.ndarray:
 
 @compile_kernel
 def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
-    """Which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
+    """Tell which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
     left, right, bottom, top = scene.bounds
     free = np.empty(len(begin), dtype=np.bool_)
     for i in range(len(begin)):
@@ -284,8 +294,9 @@ def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
 def _measure_gaps(
     begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene
 ) -> np.ndarray:
-    """How far circles lie from segments, from points (n, 2) to points (n, 2), that reach to both
-    sides by a width (n,): (m,), at most 0 where they meet one.
+    """Return how far circles (m,) lie from segments, at most 0 where they meet one.
+
+    Segments lead from points (n, 2) to points (n, 2) and reach to both sides by a width (n,).
     """
     gaps = np.full(len(scene.radii), np.inf)
     for k in range(len(gaps)):
@@ -298,8 +309,8 @@ def _measure_gaps(
 
 
 def _list_free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Free arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2) and
-    angles (n,).
+    """List free arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2)
+    and angles (n,).
     """
     pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
     for circle in np.unique(nodes.circles)[2:].tolist():
@@ -323,8 +334,9 @@ def _list_free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarra
 
 
 def _shortest_between(ends: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Indices of the edges that are the shortest between their two nodes. Sparse matrices would sum
-    duplicate edges.
+    """Return the indices of the edges that are the shortest between their two nodes.
+
+    Sparse matrices would sum duplicate edges.
     """
     low, high = np.sort(ends, axis=1).T
     order = np.lexsort([lengths, high, low])
@@ -333,7 +345,9 @@ def _shortest_between(ends: np.ndarray, lengths: np.ndarray) -> np.ndarray:
 
 
 def _find_covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Parts of a circle in other circles or outside the border: middle and half-width of each."""
+    """Return the parts of a circle in other circles or outside the border, by middle and
+    half-width.
+    """
     centres, radii = scene.centres, scene.radii
     radius = radii[k]
     others = np.delete(np.arange(2, len(radii)), k - 2)
@@ -357,8 +371,8 @@ def _circumscribe(
     scene: _Scene,
     blocked: CircleRegion,
 ) -> np.ndarray:
-    """The polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs, fine
-    enough to be free.
+    """Draw the polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs,
+    fine enough to be free.
     """
     centres, radii = scene.centres, scene.radii
     runs: list[tuple[int, float, int]] = []
@@ -368,6 +382,7 @@ def _circumscribe(
         else:
             runs.append((node, sweep, node + 1))
     arc_length = sum(abs(sweep) * radii[circles[node]] for node, sweep, _ in runs if sweep)
+    # Tangents at angles of `step` are longer than the arc by a share of step**2 / 12.
     step = math.sqrt(12 * POLYLINE_EXCESS / arc_length) if arc_length else math.inf
     for _ in range(_REFINEMENTS):
         polyline = [points[:1]]

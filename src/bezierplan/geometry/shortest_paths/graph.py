@@ -30,28 +30,30 @@ class Bound(NamedTuple):
 
 
 def no_path() -> Bound:
-    """The result of a search that finds no path."""
+    """Return the result of a search that finds no path."""
     return Bound(math.inf, np.empty((0, 2)))
 
 
 def move_bound(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
-    """A path relative to a grid's corner, converted to coordinates relative to the origin."""
+    """Move a path from coordinates relative to a grid's corner to those relative to the origin."""
     return bound._replace(points=bound.points + by)
 
 
 def follow_nodes(points: np.ndarray, nodes: np.ndarray) -> Bound:
-    """The polyline along some of the points (n, 2), without repetitions; no path without nodes."""
+    """Return the polyline along some points (n, 2), without repetitions; no path without nodes."""
     if not len(nodes):
         return no_path()
     path = points[nodes]
     moving = np.any(np.diff(path, axis=0) != 0, axis=1)
     path = np.concatenate([path[:1], path[1:][moving]]) if moving.any() else path[:2]
+    # An exact sum: the bound does not depend on the order of the legs.
     return Bound(math.fsum(np.hypot(*np.diff(path, axis=0).T)), path)
 
 
 def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
-    """The shortest polyline from the first to the second of some points (n, 2), along pairs of
-    points that see each other: bool (n, n), i < j.
+    """Find the shortest polyline from the first to the second of some points (n, 2).
+
+    visible: bool (n, n), which pairs i < j of points see each other.
     """
     from scipy.sparse import coo_array
 
@@ -62,8 +64,9 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
 
 def dijkstra_path(graph: "csr_array") -> np.ndarray:
-    """The nodes of a shortest path from node 0 to node 1 in a sparse, undirected graph; none if
-    there is no path.
+    """Return the nodes of a shortest path from node 0 to node 1 in a sparse, undirected graph.
+
+    There are none if there is no path.
     """
     from scipy.sparse.csgraph import dijkstra
 
@@ -78,7 +81,7 @@ def dijkstra_path(graph: "csr_array") -> np.ndarray:
 
 @compile_kernel
 def trace_back(before, length):
-    """The nodes from node 0 to 1, from each one's predecessor; empty if the length is infinite."""
+    """Return the nodes from 0 to 1, from each one's predecessor; none if the length is infinite."""
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])

@@ -36,10 +36,10 @@ _CENTRE_TOLERANCE = 1e-9
 
 
 def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
-    """The shortest path along start, target and the corners at which it can turn.
+    """Find the shortest path along start, target and the corners at which it can turn.
 
-    Those are the vertices with exactly one occupied cell around them, and contacts, at which two
-    occupied cells share only a corner.
+    Such corners are the vertices with exactly one occupied cell around them, and contacts, at which
+    two occupied cells share only a corner.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes = _list_grid_corners(cells)
@@ -48,6 +48,7 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
         ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape))
     )
     lattice = np.rint(ends / blocked.cell * scale).astype(np.int64)
+    # Without this test a search would look around at each corner that the start can reach.
     if not _is_joined(cells, lattice[0], lattice[1], scale):
         return no_path()
     direct = bool((lattice[0] == lattice[1]).all()) or _is_visible(
@@ -65,7 +66,7 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
 
 
 def centre_path(problem: Problem) -> Bound:
-    """The shortest polyline through centres of free cells of a grid, in the problem's unit.
+    """Find the shortest polyline through centres of free cells of a grid, in the problem's unit.
 
     Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side,
     and for more than `_MOST_NODES` free cells.
@@ -87,7 +88,10 @@ def centre_path(problem: Problem) -> Bound:
 
 
 def _find_centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
-    """Row and column of the cell whose centre is the given point."""
+    """Return the row and column of the cell whose centre is the given point.
+
+    Raises ValueError for any other point.
+    """
     column, row = grid.in_cells(np.array(point)) - 0.5
     rows, columns = grid.occupied.shape
     is_centre = (
@@ -100,8 +104,10 @@ def _find_centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tupl
 
 
 def _list_grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (n, 2) as x and y in cells, and slopes (n,) of the directions that a shortest path
-    can take from them: +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0.
+    """List the corners (n, 2) at which a shortest path can turn, x and y in cells, and the slopes
+    (n,) of the directions that it can take from them.
+
+    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0.
     """
     below_left, below_right, above_left, above_right = around = find_occupied_around(cells)
     number = around.view(np.int8).sum(axis=0, dtype=np.int8)
@@ -117,7 +123,7 @@ def _list_grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _choose_lattice(points: np.ndarray, finest: int) -> int:
-    """The least lattice points per cell that make all coordinates integers; `finest` at most."""
+    """Return the least points per cell, `finest` at most, that make all coordinates integers."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(
@@ -128,8 +134,8 @@ def _choose_lattice(points: np.ndarray, finest: int) -> int:
 
 
 def _is_joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
-    """Whether free cells lead from one free point of the lattice to another; they may meet at a
-    corner only.
+    """Tell whether free cells lead from one free point of the lattice to another; they may meet at
+    a corner only.
     """
     from scipy import ndimage
 
@@ -145,9 +151,10 @@ def _is_joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: 
 
 @compile_kernel
 def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Which pairs i < j of cell centres see each other: bool (n, n).
+    """Tell which pairs i < j of cell centres see each other: bool (n, n).
 
-    nodes: (n, 2) integers, two for each cell. cells: occupied cells with a ring around them.
+    nodes: (n, 2) integers, two for each cell.
+    cells: occupied cells with a ring around them.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     for i in range(len(nodes)):
@@ -159,7 +166,7 @@ def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 @allocation_free
 def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
-    """Whether the segment between two different points of the lattice is free."""
+    """Tell whether the segment between two different points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
         return _is_visible_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale)
@@ -170,8 +177,9 @@ def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: in
 
 @allocation_free
 def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
-    """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if
-    both of their cells are occupied.
+    """Tell whether a vertical segment is free.
+
+    On a grid line it runs along edges, which are blocked if both of their cells are occupied.
     """
     column = x // scale
     on_line = x % scale == 0
@@ -183,7 +191,7 @@ def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, s
 
 @allocation_free
 def _is_visible_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
-    """Whether a slanted segment is free: a walk over the cells that it enters.
+    """Tell whether a slanted segment is free: a walk over the cells that it enters.
 
     to_x and to_y are the distances from the segment's start to the next vertical and horizontal
     grid line, along each axis.

@@ -16,8 +16,8 @@ def lattice_path(
     diagonal_weight: float,
     corner_rule: str,
 ) -> Bound:
-    """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points
-    (x, y) in cells.
+    """Find the shortest path over the 8 neighbours of free cells, by the algorithm A*; length and
+    points (x, y) in cells.
 
     occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a
     diagonal step; others count 1. corner_rule: how many of the two cells beside a diagonal step may
@@ -51,12 +51,16 @@ def lattice_path(
 
 @compile_kernel
 def _find_least_cells(walls, start, target, steps, diagonal_weight, most_beside):
-    """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if
-    there is no path.
+    """Find a shortest path by A*.
 
-    walls: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and
-    column. most_beside: how many of the two cells beside a diagonal step may be occupied. The
-    remaining length is estimated by the shortest path without obstacles, so only cells near the
+    Returns its length and its cells (n,), numbered row by row; infinite and empty if there is no
+    path.
+
+    walls: bool (rows, columns), the cells with a frame of occupied ones.
+    start, target: row and column.
+    most_beside: how many of the two cells beside a diagonal step may be occupied.
+
+    The remaining length is estimated by the shortest path without obstacles, so only cells near the
     shortest paths are examined.
     """
     columns = walls.shape[1]
@@ -102,4 +106,5 @@ def _find_least_cells(walls, start, target, steps, diagonal_weight, most_beside)
         column -= step[1]
         cells.append(row * columns + column)
         diagonals += step[0] != 0 and step[1] != 0
+    # Steps are counted and then weighed, so equal steps give equal bits.
     return len(cells) - 1 - diagonals + diagonal_weight * diagonals, np.array(cells)[::-1]

@@ -14,12 +14,13 @@ from bezierplan.workspaces.problem import Problem
 
 
 def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
-    """The shortest path along start, target, the convex corners of the blocked region, and the
+    """Find the shortest path along start, target, the convex corners of the blocked region, and the
     points at which its corners meet.
     """
     begin = blocked.edges[:, :2]
     corner = np.flatnonzero(blocked.convex)
     repeated, count = np.unique(begin, axis=0, return_counts=True)
+    # Where corners meet, a path may pass between them and turn either way.
     anywhere = np.concatenate([[problem.start, problem.target], repeated[count > 1]])
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
@@ -31,12 +32,14 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
 def _search(
     nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
 ) -> np.ndarray:
-    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no
-    path; pairs are tested only when needed: the edges from a node to all others wait in a heap, and
-    each is tested once it is the most promising.
+    """Run the algorithm A* from node 0 to node 1.
+
+    Returns the nodes of a shortest path, empty if there is no path. Pairs are tested only when
+    needed: the edges from a node to all others wait in a heap, and each is tested once it is the
+    most promising.
 
     before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a
-    path may turn in any direction.
+        path may turn in any direction.
     """
     came_by = np.full(len(nodes), -1)
     settled = np.zeros(len(nodes), dtype=np.bool_)
@@ -75,8 +78,8 @@ def _search(
 
 @allocation_free
 def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
-    """To which side a shortest path turns at corner i, where the obstacle is: to the left (1), to
-    the right (-1), or both (0).
+    """Return to which side a shortest path turns at corner i, where the obstacle is: to the left
+    (1), to the right (-1), or both (0).
     """
     if tail < 0:
         return 0
@@ -86,8 +89,8 @@ def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np
 
 @allocation_free
 def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
-    """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one
-    side of the line.
+    """Tell whether a shortest path can turn at corner i on its way to or from j: the corner lies on
+    one side of the line.
     """
     x, y = nodes[i, 0], nodes[i, 1]
     dx, dy = nodes[j, 0] - x, nodes[j, 1] - y
@@ -103,7 +106,9 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
 
 @allocation_free
 def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
-    """Whether a segment crosses an edge strictly; mere touching is left to the certified check.
+    """Tell whether a segment crosses an edge strictly; mere touching is left to the certified
+    check.
+
     Edges near its beginning come first.
     """
     left, right, bottom, top = min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1])
@@ -128,6 +133,7 @@ def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins
 
 @allocation_free
 def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+    """Tell whether two segments cross strictly."""
     return _is_apart(_offset(a, b, c), _offset(a, b, d)) and _is_apart(
         _offset(c, d, a), _offset(c, d, b)
     )
@@ -135,13 +141,16 @@ def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> 
 
 @allocation_free
 def _is_apart(first: float, second: float) -> bool:
-    """Whether two offsets lie strictly on opposite sides of a line."""
+    """Tell whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 
 
 @allocation_free
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
-    """Distance of a point from the line through a and b, positive on its left; 0 if a equals b."""
+    """Return the distance of a point from the line through a and b, positive on its left.
+
+    It is 0 if a equals b.
+    """
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     if length == 0.0:
         return 0.0

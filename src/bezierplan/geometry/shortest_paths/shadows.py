@@ -1,11 +1,11 @@
-"""Shortest paths on grids: the corners that a node sees are found by casting shadows, and
-only when a search reaches the node.
+"""Shortest paths on grids: the corners that a node sees are found by casting shadows, and only when
+a search reaches the node.
 
 A graph of all pairs would need memory for each of them. Here a node looks up and down, row of cells
 by row of cells. It keeps the intervals of directions in which nothing has been in the way yet; each
-block of occupied cells in a row takes an open interval out of them, so what remains is closed, down
-to single rays that touch corners on both sides. A direction is its slope, steps in x for each step
-in y: a fraction of two whole numbers, so all comparisons are exact.
+block of occupied cells in a row takes an open interval out of them, so the remaining intervals are
+closed, down to single rays that touch corners on both sides. A direction is its slope, steps in x
+for each step in y: a fraction of two whole numbers, so all comparisons are exact.
 """
 
 import heapq
@@ -20,15 +20,16 @@ from bezierplan.kernels import allocation_free, compile_kernel
 
 
 class Scene(NamedTuple):
-    """What there is to see. Whole numbers: `scale` stands for one cell.
+    """The cells and corners that can be seen, in whole numbers: `scale` stands for one cell.
 
-    cells: bool (rows + 2, columns + 2), occupied cells with a ring around them. first_run: (rows +
-    3,) where the runs of occupied cells of each row of `cells` begin in `runs`. runs: (r, 2) grid
-    lines at which a run begins and ends, in cells. corners: (n, 2) x and y in cells, row by row,
-    each from left to right. first_corner: (rows + 2,) where those of each horizontal grid line
-    begin. slopes: (n,) signs of dx dy of the directions that a shortest path can take from a
-    corner. sides: (n,) whether the occupied cell beside a corner lies above it (1) or below it
-    (-1); 0 at a contact, which has both.
+    cells: bool (rows + 2, columns + 2), occupied cells with a ring around them.
+    first_run: (rows + 3,) where the runs of occupied cells of each row of `cells` begin in `runs`.
+    runs: (r, 2) grid lines at which a run begins and ends, in cells.
+    corners: (n, 2) x and y in cells, row by row, each from left to right.
+    first_corner: (rows + 2,) where the corners of each horizontal grid line begin.
+    slopes: (n,) signs of dx dy of the directions that a shortest path can take from a corner.
+    sides: (n,) whether the occupied cell beside a corner lies above it (1) or below it (-1); 0 at a
+        contact, which has both.
     """
 
     cells: np.ndarray
@@ -42,7 +43,7 @@ class Scene(NamedTuple):
 
 
 def build_scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
-    """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
+    """Build the scene of occupied cells with a ring around them and corners found by `grid`."""
     row, begin, end = find_runs(cells).astype(np.int64).T
     runs = np.column_stack([begin, end]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
@@ -56,11 +57,14 @@ def build_scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scal
 
 @compile_kernel
 def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> np.ndarray:
-    """The nodes of a shortest path from start to target by the algorithm A*, empty if there is no
-    path. Node 0 is the start, node 1 the target, then come the corners.
+    """Run the algorithm A* from start to target.
 
-    ends: (2, 2) start and target in whole numbers. points: (n + 2, 2) all nodes in cells. direct:
-    whether start and target see each other.
+    Returns the nodes of a shortest path, empty if there is no path. Node 0 is the start, node 1 the
+    target, then come the corners.
+
+    ends: (2, 2) start and target in whole numbers.
+    points: (n + 2, 2) all nodes in cells.
+    direct: true if start and target see each other.
     """
     ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
     at = np.concatenate((ends, scene.corners * scene.scale))
@@ -71,6 +75,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     fans = np.empty((2, scene.cells.shape[1] + 1, 4), dtype=np.int64)
     sees_target = np.zeros(len(points), dtype=np.bool_)
     sees_target[0] = direct
+    # Sight is mutual: one look around from the target tells which nodes see it.
     for k in range(_look_around(at[1], scene, fans, view)):
         sees_target[view[k] + 2] = True
 
@@ -104,8 +109,9 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
 
 @allocation_free
 def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, view: np.ndarray) -> int:
-    """The corners that a point sees and a shortest path can pass in that direction: their number,
-    and themselves in `view`.
+    """Find the corners that a point sees and a shortest path can pass in that direction.
+
+    Returns their number, and writes them to `view`.
 
     fans: (2, columns + 3, 4) room for intervals.
     """
@@ -125,7 +131,7 @@ def _look(
     fans: np.ndarray,
     view: np.ndarray,
 ) -> int:
-    """As `_look_around`, from a corner that a path has come to along a vector.
+    """Look around (`_look_around`) from a corner that a path has come to along a vector.
 
     It goes on in the same quadrant, or it would have been shorter past the corner; and it turns
     towards the occupied cell beside the corner or not at all. At a contact it can turn both ways.
@@ -149,10 +155,10 @@ def _look(
 
 @allocation_free
 def _look_along(x: int, y: int, to: int, scene: Scene, view: np.ndarray) -> int:
-    """The corners that a point sees along its horizontal grid line, if it lies on one: to the right
-    (1), to the left (-1), or both (0).
+    """Find the corners that a point sees along its horizontal grid line, if it lies on one.
 
-    An edge ends the view if both of its cells are occupied.
+    to: to the right (1), to the left (-1), or both (0). An edge ends the view if both of its cells
+        are occupied.
     """
     if y % scene.scale:
         return 0
@@ -171,7 +177,7 @@ def _look_across(x, y, side, cone, scene, fans, view, count):
     how many there are now.
 
     cone: its lowest and its highest slope, each by numerator and denominator, which may be 0; so
-    are the intervals.
+        are the intervals.
     """
     band = y // scene.scale if side > 0 else -(-y // scene.scale) - 1
     far = (band + 1) * scene.scale - y if side > 0 else y - band * scene.scale
@@ -203,8 +209,8 @@ def _look_across(x, y, side, cone, scene, fans, view, count):
 
 @allocation_free
 def _cast_shadows(x, band, near, fan, intervals, scene, following):
-    """Take what a row of cells hides out of the intervals; write what remains and return how many
-    intervals that is.
+    """Take out of the intervals all that a row of cells hides, and write the rest; return how many
+    intervals there are.
 
     near: distance of the line before the row, in y, above 0.
     """
@@ -237,7 +243,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 @allocation_free
 def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
-    """The first run of a row that ends right of a grid line; every row ends with the ring's."""
+    """Return the first run of a row that ends right of a grid line; the ring's ends each row."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
         middle = (low + high) // 2
@@ -251,7 +257,7 @@ def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
 @allocation_free
 def _gather(left, right, line, x, side, scene, view, count):
     """Add to `view` the corners on a horizontal grid line between two vertical ones that a shortest
-    path from x can pass; their number.
+    path from x can pass, and return how many there are now.
     """
     corner, end = scene.first_corner[line], scene.first_corner[line + 1]
     high = end

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from bezierplan.analysis.audit import rules
 from bezierplan.analysis.audit.rows import checked, compared
-from bezierplan.papers.elhoseny2017.functions import counts, said, solutions
+from bezierplan.papers.elhoseny2017.functions import count_pairs, read_solutions, read_text_values
 from bezierplan.planners.parts.diversity import compute_q_statistic
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def audit(published: "Published") -> list[dict]:
-    """Printed numbers that contradict the text, other tables or the rule for counting lengths.
+    """List printed numbers that contradict the text, other tables or the rule for counting lengths.
 
     A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between
     opposite corners; a path that never turns back counts at most 2. Sentences of Section 4.6 are
@@ -27,10 +27,11 @@ def audit(published: "Published") -> list[dict]:
 
 
 def _audit_example(published: "Published") -> Iterator[dict]:
-    printed, genes = said(published), solutions(published)
+    """List rows about the worked example of Q (Section 3.3.1)."""
+    printed, genes = read_text_values(published), read_solutions(published)
     in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
     rule = "the text counts as it defines"
-    for name, counted in counts(genes["S1"], genes["S2"]).items():
+    for name, counted in count_pairs(genes["S1"], genes["S2"]).items():
         yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
     rule, q = (
         "Q of the counts in the text is the printed one",
@@ -40,8 +41,10 @@ def _audit_example(published: "Published") -> Iterator[dict]:
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:
-    printed = said(published)
+    """List rows about sentences on eta, on crossovers and on obstacles that move."""
+    printed = read_text_values(published)
     eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
+    # Eta decays by a factor, which the text calls linear.
     last = eta * decay**iterations
     rule = f"eta decreases to 0 over the {iterations} iterations"
     yield checked("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)

@@ -22,37 +22,41 @@ if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Options as FunctionCheck
 
 
-def said(published: "Published") -> dict[str, float]:
-    """Values in the text, by quantity; a fraction stands for its value."""
+def read_text_values(published: "Published") -> dict[str, float]:
+    """Read the values in the text, by quantity; a fraction stands for its value."""
     return {
         row.quantity: float(Fraction(str(row.value)))
         for row in published["text_values"].itertuples()
     }
 
 
-def solutions(published: "Published") -> dict[str, np.ndarray]:
-    """Table 1: the genes (10,) of each solution."""
+def read_solutions(published: "Published") -> dict[str, np.ndarray]:
+    """Read Table 1: the genes (10,) of each solution."""
     return {name: row.to_numpy() for name, row in published["table1"].set_index(" ").iterrows()}
 
 
-def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
-    """Section 3.3: the number of genes with each pair of values in one solution and the other."""
+def count_pairs(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
+    """Count the genes with each pair of values in one solution and the other (Section 3.3).
+
+    >>> count_pairs(np.array([1, 1, 0]), np.array([1, 0, 0]))
+    {'N11': 1, 'N00': 1, 'N10': 1, 'N01': 0}
+    """
     return {
         f"N{a}{b}": int(((one == a) & (other == b)).sum())
         for a, b in ((1, 1), (0, 0), (1, 0), (0, 1))
     }
 
 
-def q(one: np.ndarray, other: np.ndarray) -> float:
-    """Equation 10: Q of two solutions (n,) of 0 and 1."""
-    return compute_q_statistic(*counts(one, other).values())
+def compute_q(one: np.ndarray, other: np.ndarray) -> float:
+    """Return Q of two solutions (n,) of 0 and 1 (equation 10)."""
+    return compute_q_statistic(*count_pairs(one, other).values())
 
 
 def q_table(published: "Published") -> pd.DataFrame:
-    """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their
-    pairs, and the mean Q.
+    """Compute Table 1 and its derived quantities: genes of the solutions, counts and Q (equation
+    10) of their pairs, and the mean Q.
     """
-    genes = solutions(published)
+    genes = read_solutions(published)
     rows = [
         {"solutions": name, **{f"gene {gene}": value for gene, value in enumerate(values, 1)}}
         for name, values in genes.items()
@@ -60,8 +64,8 @@ def q_table(published: "Published") -> pd.DataFrame:
     pairs = [
         {
             "solutions": f"{one}, {other}",
-            **counts(genes[one], genes[other]),
-            "Q": q(genes[one], genes[other]),
+            **count_pairs(genes[one], genes[other]),
+            "Q": compute_q(genes[one], genes[other]),
         }
         for one, other in itertools.combinations(genes, 2)
     ]
@@ -74,16 +78,18 @@ def q_table(published: "Published") -> pd.DataFrame:
 def q_example(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
-    """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
-    difference from a printed value.
+    """Judge claim C20: the Q statistics of Table 1 agree with the text.
+
+    The effect is the largest difference from a printed value.
     """
-    genes, printed = solutions(published), said(published)
+    genes, printed = read_solutions(published), read_text_values(published)
     q_values = {
-        f"Q of {one} and {other}": q(genes[one], genes[other])
+        f"Q of {one} and {other}": compute_q(genes[one], genes[other])
         for one, other in itertools.combinations(genes, 2)
     }
     mean = float(np.mean(list(q_values.values())))
     differences = [abs(value - printed[pair]) for pair, value in q_values.items()]
+    # Single values are printed in full, the mean with two decimals.
     holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
     most = max(*differences, abs(mean - printed["mean Q"]))
     return "+" if holds else "-", most, None, len(q_values)
@@ -92,7 +98,7 @@ def q_example(
 def fluctuation(
     check: "FunctionCheck", results: "Experiments", published: "Published", *, most: float
 ) -> "FunctionResult":
-    """Claim C10: whether runs on one field differ, by a standard deviation of at most a share of
+    """Judge claim C10: runs on one field differ, by a standard deviation of at most a share of
     their mean.
 
     The effect is the largest coefficient of variation on a field, with its bootstrap interval; the
@@ -111,11 +117,13 @@ def fluctuation(
 def endless_loops(
     check: "FunctionCheck", results: "Experiments", published: "Published", *, least: float
 ) -> "FunctionResult":
-    """Return claim C33: whether, of the iterations of a run that enter the loop of Algorithm 2, at
-    least a share do not end it by themselves. The effect is the mean of that share over the runs,
-    with its bootstrap interval.
+    """Judge claim C33: at least a share of the iterations of a run that enter the loop of Algorithm
+    2 do not end it by themselves.
+
+    The effect is the mean of that share over the runs, with its bootstrap interval.
     """
     runs = select(results[check.experiments[0]].runs, check.where)
+    # A run that never enters the loop says nothing about how it ends.
     shares = (runs["endless_loops"] / runs["loops"]).dropna().to_numpy()
     low, high = map(float, interval("mean", shares, generator("elhoseny2017/C33")))
     mark = "+" if low >= least else "-" if high < least else "?"
@@ -125,8 +133,7 @@ def endless_loops(
 def printed_over_bound(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
-    """Claim C23: whether no printed length of a competing method is larger than such fields
-    explain.
+    """Judge claim C23: no printed length of a competing method is larger than such fields explain.
 
     A path that never turns back in x or in y counts at most two cells for every cell of the side.
     Shortest paths among such obstacles do not turn back, so the fields cannot explain a larger
@@ -149,23 +156,24 @@ def printed_over_bound(
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
 
 
-def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
-    """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a
-    share of the side.
+def estimate_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
+    """Return the mean of `cells4` of paths between opposite corners that never turn back, in cells.
 
     Such a path counts 2 cells per cell of the side, but 1.5 along a free diagonal. A circle with
     its centre uniform in the square leaves the diagonal free with probability (1 - sqrt(2)
     radius)^2: the share of the square farther from the diagonal than the radius.
+
+    radius: a share of the side.
     """
     free = (1 - np.sqrt(2) * radius) ** (2 * np.asarray(obstacles))
     return side * (2 - (2 - DIAGONAL) * free)
 
 
-def printed_lengths(published: "Published") -> pd.DataFrame:
-    """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
-    in cells.
+def read_printed_lengths(published: "Published") -> pd.DataFrame:
+    """Read the lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles
+    and value, in cells.
     """
-    printed = said(published)
+    printed = read_text_values(published)
     tables = [
         published[table].assign(side=int(printed[f"side in {table}"]))
         for table in ("table2", "table3")
@@ -175,12 +183,13 @@ def printed_lengths(published: "Published") -> pd.DataFrame:
 
 
 def radius_errors(published: "Published") -> pd.DataFrame:
-    """The error of the expected lengths against the radius, as a share of their mean; columns:
-    radius (a share of the side), side, relative_error.
+    """Compute the error of the expected lengths against the radius, as a share of their mean.
+
+    Columns: radius (a share of the side), side, relative_error.
     """
     rows = []
-    for side, printed in printed_lengths(published).groupby("side"):
+    for side, printed in read_printed_lengths(published).groupby("side"):
         for radius in np.arange(5, 81) / 1000:
-            apart = printed["value"] - expected_length(side, radius, printed["obstacles"])
+            apart = printed["value"] - estimate_length(side, radius, printed["obstacles"])
             rows.append((radius, side, apart.abs().mean() / printed["value"].mean()))
     return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])

@@ -21,9 +21,10 @@ BENDING_PART = 0.1
 BENDING_SAMPLES = 64
 
 
-def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
-    """A path as steps (n, 2) between points at equal arc-length spacing, and that spacing, close to
-    `BENDING_PART`.
+def _cut_into_equal_parts(path: Path) -> tuple[np.ndarray, float]:
+    """Cut a path into steps (n, 2) between points at equal arc-length spacing.
+
+    Returns the steps and the spacing, which is close to `BENDING_PART`.
     """
     from bezierplan.geometry import curves
 
@@ -32,6 +33,7 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
         count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
         points = samples_of(path, count)
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    # Two parts at least, or there would be no change of heading.
     parts = max(2, round(at[-1] / BENDING_PART))
     wanted = np.linspace(0.0, at[-1], parts + 1)
     return np.diff(
@@ -45,15 +47,17 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
     "added: the integral of squared curvature",
 )
 def bending(path: Path) -> float:
-    """Integral of squared curvature, from parts of about `BENDING_PART`, in radians^2/unit."""
-    steps, length = _equal_parts(path)
+    """Return the integral of squared curvature, from parts of about `BENDING_PART`, in
+    rad²/unit.
+    """
+    steps, length = _cut_into_equal_parts(path)
     return float((headings(steps) ** 2).sum() / length) if length else 0.0
 
 
 @of_path("degrees", f"largest change of heading between parts of {BENDING_PART:g} u")
 def max_turn(path: Path) -> float:
-    """Largest change of heading between parts of about `BENDING_PART`, in degrees."""
-    return float(np.degrees(headings(_equal_parts(path)[0]).max(initial=0.0)))
+    """Return the largest change of heading between parts of about `BENDING_PART`, in degrees."""
+    return float(np.degrees(headings(_cut_into_equal_parts(path)[0]).max(initial=0.0)))
 
 
 @metric(
@@ -63,8 +67,8 @@ def max_turn(path: Path) -> float:
     on=("grid",),
 )
 def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied
-    cell.
+    """Tell for which runs (n,), on grids, the straight line from start to target touches an
+    occupied cell.
     """
     from bezierplan.workspaces.problem import Path
 
@@ -75,12 +79,13 @@ def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Ser
     return runs["problem"].map(blocked)
 
 
-def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies
-    below its problem's bound.
+def measure_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """Measure a length counted in cells (`cell_length`).
 
     NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding
-    would decide which cells it counts, and the bound is that of free cells.
+    would decide which cells it counts, and the bound holds for free cells.
+
+    Raises ValueError, naming the run, if a length lies below its problem's bound.
     """
     from bezierplan.geometry import cell_length
 
@@ -91,6 +96,7 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
         problems,
     )
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
+        # Sums of steps and of diagonals differ by rounding only.
         if length < bound * (1 - 1e-12):
             raise ValueError(
                 f"run {run} is said to be feasible, but its length {length:.12g} in cells lies "
@@ -99,9 +105,9 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
     return lengths
 
 
-def gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """A length counted in cells over the problem's least such length, minus 1 (n,)."""
-    return length_in_cells(name, runs, problems) / runs["octile_bound"] - 1
+def compute_gap_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Return a length counted in cells over the problem's least such length, minus 1 (n,)."""
+    return measure_in_cells(name, runs, problems) / runs["octile_bound"] - 1
 
 
 register(
@@ -126,10 +132,10 @@ register(
 )
 
 
-def _in_cells(name: str, function: str, gap: str, meaning: str) -> None:
+def _register_length(name: str, function: str, gap: str, meaning: str) -> None:
     """Register a length counted in cells, which has its own bound and gap, and that gap."""
     alike = {"bound": "octile_bound", "gap": gap, "feasible_only": True, "on": ("grid",)}
-    length, over = partial(length_in_cells, function), partial(gap_cells, function)
+    length, over = partial(measure_in_cells, function), partial(compute_gap_in_cells, function)
     register(
         {
             name: Metric("u", meaning, length, least="octile_bound", **alike),
@@ -138,18 +144,18 @@ def _in_cells(name: str, function: str, gap: str, meaning: str) -> None:
     )
 
 
-_in_cells(
+_register_length(
     "points",
     "length_by_points",
     "gap_points",
     "points of the path at most a cell apart, 1.5 for a diagonal step; none for a path that "
     "touches an occupied cell",
 )
-_in_cells(
+_register_length(
     "cells4",
     "length4",
     "gap4",
     "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an "
     "occupied cell",
 )
-_in_cells("cells8", "length8", "gap8", "cells4 without the corners of the sequence of cells")
+_register_length("cells8", "length8", "gap8", "cells4 without the corners of the sequence of cells")

@@ -9,24 +9,25 @@ import numpy as np
 from bezierplan.analysis.audit import rules
 from bezierplan.analysis.audit.rows import checked, compared
 from bezierplan.geometry import curves
-from bezierplan.papers.ma2020.functions import side_of_maps
+from bezierplan.papers.ma2020.functions import read_side_of_maps
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
 
 
 def audit(published: "Published") -> list[dict]:
-    """Printed numbers that are impossible, or contradict others.
+    """List printed numbers that are impossible, or contradict others.
 
     No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells.
-    Statements in the text about lengths and times are checked against the tables, that on the
+    Statements in the text about lengths and times are checked against the tables, the one about the
     parameter of a curve and equation (11) by computing.
     """
     return [*rules.audit(published), *_audit_text(published)]
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:
-    side = side_of_maps(published)
+    """List rows about shares of cells, equations (11) to (15), and parameters of curves."""
+    side = read_side_of_maps(published)
     parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
     rule = "a share of the cells is a whole number of cells"
     for workspace in ("environment1", "environment2"):

@@ -22,11 +22,12 @@ def drawn_farther(
     method: str,
     other: str,
 ) -> "FunctionResult":
-    """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
-    than that drawn of another, on every map.
+    """Judge claim C6: the path drawn of one method, its shortest, stays farther from obstacles than
+    the one drawn of another, on every map.
 
-    The effect is the least excess in clearance, the units are the paths. Raises Untestable if a
-    method has no feasible run on a map.
+    The effect is the least excess in clearance, the units are the paths.
+
+    Raises Untestable if a method has no feasible run on a map.
     """
     experiment = results[check.experiment]
     excess = []
@@ -49,7 +50,7 @@ def excess_of_corners(
     beside: str,
     least: float,
 ) -> "FunctionResult":
-    """Claim C27: whether superfluous corners cause at least a share of the excess of each method's
+    """Judge claim C27: superfluous corners cause at least a share of the excess of each method's
     mean length over that of another.
 
     The effect is the least share, the units are the paths.
@@ -66,8 +67,9 @@ def excess_of_corners(
 def printed_minima(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
-    """Claim C18: whether every shortest length in the text is that in Table 1 or 2. The effect is
-    the largest difference, the units are the lengths.
+    """Judge claim C18: every shortest length in the text is the one in Table 1 or 2.
+
+    The effect is the largest difference, the units are the lengths.
     """
     quoted, *tables = (
         published[name]
@@ -76,11 +78,12 @@ def printed_minima(
         for name in ("text_numbers", "table1", "table2")
     )
     apart = (quoted - pd.concat(tables).reindex(quoted.index)).abs()
+    # Both are decimals as printed, so equal ones are equal to the last bit.
     return "+" if (apart == 0).all() else "-", float(apart.max()), None, len(quoted)
 
 
-def side_of_maps(published: "Published") -> int:
-    """Cells of both maps along x and along y, as printed: those from start to target."""
+def read_side_of_maps(published: "Published") -> int:
+    """Read how many cells both maps have along x and along y, as printed from start to target."""
     parameters = published["parameters"]
     (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()
     return int(side)

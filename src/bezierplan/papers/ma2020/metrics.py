@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @of_path("rad", "largest change of heading between neighbouring chords")
 def heading_max(path: Path) -> float:
-    """Largest change of heading between neighbouring chords, in radians."""
+    """Return the largest change of heading between neighbouring chords, in radians."""
     return float(path_headings(path).max(initial=0.0))
 
 
@@ -33,45 +33,49 @@ def heading_max(path: Path) -> float:
     step=1.0,
 )
 def spare_corners(path: Path, grid: Grid) -> float:
-    """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins
-    the corners before and after. NaN for a curve.
+    """Count the corners of a polyline that can be left out, NaN for a curve.
+
+    A straight leg that enters no occupied cell joins the corners before and after.
     """
-    return float(_spare(_turns(path), grid).sum()) if path.curve == "polyline" else np.nan
+    return float(_find_spare(_list_turns(path), grid).sum()) if path.curve == "polyline" else np.nan
 
 
 @on_map("u", "length of a polyline without the corners that can be left out", "grid")
 def length_without_spares(path: Path, grid: Grid) -> float:
-    """Length of a polyline from which corners are left out, the first that can be at a time. NaN
-    for a curve.
+    """Return the length of a polyline from which corners are left out, the first that can be at a
+    time.
+
+    NaN for a curve.
     """
     if path.curve != "polyline":
         return np.nan
-    turns = _turns(path)
-    while (spare := _spare(turns, grid)).any():
+    turns = _list_turns(path)
+    # One at a time: a corner may be needed once its neighbour is gone.
+    while (spare := _find_spare(turns, grid)).any():
         turns = np.delete(turns, spare.argmax() + 1, axis=0)
     return float(np.hypot(*np.diff(turns, axis=0).T).sum())
 
 
-def _turns(path: Path) -> np.ndarray:
-    """The ends and corners (n, 2) of a polyline."""
+def _list_turns(path: Path) -> np.ndarray:
+    """List the ends and corners (n, 2) of a polyline."""
     steps = np.diff(path.points, axis=0)
     moved = np.hypot(*steps.T) > 0
     places, turned = path.points[1:][moved], headings(steps[moved])
     return np.concatenate([path.points[:1], places[:-1][turned > CORNER], places[-1:]])
 
 
-def _spare(turns: np.ndarray, grid: Grid) -> np.ndarray:
-    """Whether each inner corner of a polyline (n, 2) can be left out (n - 2,)."""
+def _find_spare(turns: np.ndarray, grid: Grid) -> np.ndarray:
+    """Tell which inner corners of a polyline (n, 2) can be left out (n - 2,)."""
     import shapely
 
     legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
-    return ~shapely.intersects(_inside(grid), legs)
+    return ~shapely.intersects(_build_inside(grid), legs)
 
 
 @lru_cache(maxsize=8)
-def _inside(grid: Grid) -> Geometry:
-    """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller,
-    since a path may touch them.
+def _build_inside(grid: Grid) -> Geometry:
+    """Build the shape that a path must not enter: the occupied cells of a grid, a billionth of a
+    cell smaller, since a path may touch them.
     """
     import shapely
 
@@ -90,16 +94,17 @@ def _inside(grid: Grid) -> Geometry:
     on=("grid",),
 )
 def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
-    none.
+    """Return the least distance (n,) from a path in a grid to its occupied cells; infinite without
+    any.
     """
-    return of_paths([_clearance_in(problems[name].workspace) for name in runs["problem"]], runs)
+    return of_paths(
+        [_prepare_clearance(problems[name].workspace) for name in runs["problem"]], runs
+    )
 
 
 @cache
-def _clearance_in(grid: Grid) -> Callable[[Path], float]:
-    """The smallest distance of a free path to the occupied cells of a grid, as a measure of the
-    path.
+def _prepare_clearance(grid: Grid) -> Callable[[Path], float]:
+    """Return a measure of free paths: the least distance to the occupied cells of a grid.
 
     This is the checker's clearance, which counts the border, in the same grid padded with free
     cells so that the border is farthest.
@@ -130,7 +135,7 @@ def _clearance_in(grid: Grid) -> Callable[[Path], float]:
     on=("grid",),
 )
 def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the
+    """Tell which paths (n,) keep their planner's safety distance from the obstacles; NaN where the
     planner has none.
     """
     kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
@@ -145,5 +150,7 @@ def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarr
     on=("grid",),
 )
 def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Lengths (n,) of the paths that keep their planner's safety distance; NaN of all others."""
+    """Return the lengths (n,) of paths that keep their planner's safety distance; NaN of all
+    others.
+    """
     return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()

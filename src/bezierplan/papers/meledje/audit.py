@@ -25,12 +25,12 @@ RANKED = {"optimal": "optima", "objective": "mean fitness", "cpu_s": "mean solut
 
 
 def audit(published: "Published") -> list[dict]:
-    """Numbers in Tables 2 to 5 that contradict others.
+    """List numbers in Tables 2 to 5 that contradict others.
 
-    The three counts of a row add up to the trials. What Section 4 says about the proposed mutation
-    is checked against the numbers, by value alone and, for counts, by Fisher's exact test, with
-    Holm's correction over the paper's twelve comparisons. The other tables rank the operators as
-    Table 2 does, by optima, mean fitness and time.
+    The three counts of a row add up to the trials. The sentences of Section 4 about the proposed
+    mutation are checked against the numbers, by value alone and, for counts, by Fisher's exact
+    test, with Holm's correction over the paper's twelve comparisons. The other tables rank the
+    operators as Table 2 does, by optima, mean fitness and time.
     """
     tables = {
         name: table.set_index(["method", "metric"])["value"]
@@ -44,10 +44,10 @@ def audit(published: "Published") -> list[dict]:
     rows = rules.audit(published)
     for sentence in said:
         if sentence.quantity in TESTED:
-            rows += _fisher_rows(
+            rows += _test_by_fisher(
                 tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best]
             )
-            rows.append(_pooled_row(tables, trials, sentence.quantity, sentence.words))
+            rows.append(_test_all_maps(tables, trials, sentence.quantity, sentence.words))
     pairs = list(itertools.combinations(operators, 2))
     for metric, words in RANKED.items():
         for name in ("table3", "table4", "table5"):
@@ -67,7 +67,7 @@ def audit(published: "Published") -> list[dict]:
     return [*rows, compared("text", "title", rule, drives, ">=", 1)]
 
 
-def _fisher_rows(
+def _test_by_fisher(
     tables: dict[str, pd.Series],
     trials: dict[str, int],
     others: list[str],
@@ -75,7 +75,10 @@ def _fisher_rows(
     words: str,
     sign: int,
 ) -> list[dict]:
-    """Whether the proposed mutation's count differs from each other one by more than chance."""
+    """Test whether the proposed mutation's count differs from each other one by more than chance.
+
+    sign: 1 if a higher count is better, -1 if a lower one is.
+    """
     from scipy import stats
 
     pairs, apart, p = list(itertools.product(tables, others)), [], []
@@ -97,16 +100,17 @@ def _fisher_rows(
             ALPHA,
             bool(value < ALPHA and sign * more > 0),
         )
-        for (name, other), more, value in zip(pairs, apart, holm(np.array(p)).tolist())
+        for (name, other), more, value in zip(pairs, apart, correct_by_holm(np.array(p)).tolist())
     ]
 
 
-def _pooled_row(
+def _test_all_maps(
     tables: dict[str, pd.Series], trials: dict[str, int], metric: str, words: str
 ) -> dict:
-    """Whether the proposed mutation's counts of all maps together differ from those of ref12 by
-    more than chance: the test of Cochran, Mantel and Haenszel with its correction for
-    continuity, a map a stratum.
+    """Test whether the proposed mutation's counts of all maps together differ from those of ref12
+    by more than chance.
+
+    The test of Cochran, Mantel and Haenszel with its correction for continuity, a map a stratum.
     """
     from scipy import stats
 
@@ -134,9 +138,10 @@ def _pooled_row(
     )
 
 
-def holm(p: np.ndarray) -> np.ndarray:
-    """The p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
+def correct_by_holm(p: np.ndarray) -> np.ndarray:
+    """Correct the p (n,) of a family by Holm's step-down procedure: (n,)."""
     order = np.argsort(p)
     corrected = np.empty(len(p))
+    # The running maximum: a larger p is never corrected to a smaller one.
     corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)
     return corrected

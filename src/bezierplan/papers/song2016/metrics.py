@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     feasible_only=True,
 )
 def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Length over that of the best run of the same method and condition, minus 1 (n,)."""
+    """Return the length over the best one's of the same method and condition, minus 1 (n,)."""
     best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
     return runs["length"] / best - 1
 
@@ -40,21 +40,22 @@ def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     "corners between pieces left out",
 )
 def signed_curvature(path: Path) -> float:
-    """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns
-    are positive), in 1/unit; it counts as 0 where the speed is zero.
+    """Return the largest curvature of `CURVATURE_SAMPLES` samples with its sign, in 1/unit.
+
+    Left turns are positive (song2016, eq. 5); the curvature counts as 0 where the speed is zero.
     """
     return float(np.nan_to_num(curvature_samples(path)).max())
 
 
 @of_path("-", "control points that differ from each other", feasible_only=False, step=1.0)
 def distinct_points(path: Path) -> int:
-    """Number of distinct control points of a path."""
+    """Count the distinct control points of a path."""
     return len(set(map(tuple, path.points.tolist())))
 
 
 @on_map("-", "control points in occupied cells of a grid", "grid", step=1.0)
 def occupied_points(path: Path, grid: Grid) -> int:
-    """Number of control points in occupied cells; a point on a grid line belongs to the cell above
+    """Count the control points in occupied cells; a point on a grid line belongs to the cell above
     or to the right.
 
     song2016's planner may use surplus cells outside a grid whose width is not a power of two
@@ -62,13 +63,14 @@ def occupied_points(path: Path, grid: Grid) -> int:
     """
     occupied = embed(grid.occupied)
     columns, rows = np.floor(grid.in_cells(path.points) + ON_LINE).astype(int).T
+    # A point on the upper or right border has no cell above or to the right.
     last = np.array(occupied.shape) - 1
     return int(occupied[np.minimum(rows, last[0]), np.minimum(columns, last[1])].sum())
 
 
 @metric("-", "whether the path is free and so is its control polygon", step=1.0, on=("grid",))
 def free_polygon(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's path is free and its control polygon touches no occupied cell."""
+    """Tell which runs (n,) have a free path whose control polygon touches no occupied cell."""
     polygons = runs.assign(path_curve=np.where(runs["path_curve"] == "", "", "polyline"))
     free = on_maps(lambda path, grid: free_cells(path, grid) is not None, polygons, problems)
     return runs["feasible"].to_numpy() & (np.array(free) == 1)
@@ -76,15 +78,15 @@ def free_polygon(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray
 
 @of_path("u", "length of the control polygon", least="bound")
 def polygon_length(path: Path) -> float:
-    """Length of a path's control polygon, in units."""
+    """Return the length of a path's control polygon, in units."""
     return float(np.hypot(*np.diff(path.points, axis=0).T).sum())
 
 
-def first_generation_improved_by(
+def find_generation_improved_by(
     share: float, runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> np.ndarray:
-    """First generation (n,) by which a share of the improvement from generation 0 to the last is
-    made; 0 if there is none.
+    """Return the first generation (n,) by which a share of the improvement from generation 0 to the
+    last is made; 0 if there is none.
     """
     held = held_history(runs)
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
@@ -99,7 +101,7 @@ register(
         "generation_90pct_improved": generation(
             "first generation by which nine tenths of the run's improvement of the objective are "
             "made",
-            partial(first_generation_improved_by, 0.9),
+            partial(find_generation_improved_by, 0.9),
         ),
     }
 )

@@ -1,5 +1,5 @@
-"""tharwat2018: the claims that a comparison of runs cannot judge, data of its figures without runs,
-and an audit of its tables and text.
+"""tharwat2018: claims that a comparison of runs cannot judge, data of its figures without runs, and
+    an audit of its tables and text.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -45,8 +45,9 @@ CHAOTIC = chaotic_maps.MAPS[:8]
 
 
 def chaotic_sequences(*, iterations: int, singer_mu: float) -> pd.DataFrame:
-    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1),
-    value. Each map has one random start.
+    """Compute Figure 3: one row per map of the paper and iteration.
+
+    Columns: map, iteration (from 1), value. Each map has one random start.
 
     singer_mu: mu of the Singer map.
     """
@@ -64,11 +65,11 @@ def chaotic_sequences(*, iterations: int, singer_mu: float) -> pd.DataFrame:
 def gauss_above(
     check: "FunctionCheck", results: "Experiments", published: "Published", *, limit: float
 ) -> "FunctionResult":
-    """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
-    their first values.
+    """Judge claim C39 by the share of values above a limit in long sequences of the Gauss map.
 
-    It tends to 1 - log2(1 + limit), which is 0.234 for 0.7, since the map's values have the density
-    1 / ((1 + x) ln 2). The interval is that of the mean over sequences, each one unit.
+    The first values are left out. The share tends to 1 - log2(1 + limit), which is 0.234 for 0.7,
+    since the map's values have the density 1 / ((1 + x) ln 2). The interval is the one of the mean
+    over sequences, each one unit.
     """
     rng = generator("tharwat2018/C39")
     shares = []
@@ -76,12 +77,12 @@ def gauss_above(
         start = chaotic_maps.draw_start(rng, "gauss", math.nan)
         values = chaotic_maps.compute_sequence("gauss", start, 1000, math.nan).values[FIRST_VALUES:]
         shares.append(np.mean(values > limit))
-    share, ends = _mean(np.array(shares))
+    share, ends = _estimate_mean(np.array(shares))
     return "-" if share > 0 else "+", share, ends, SEQUENCES
 
 
-def _mean(values: np.ndarray) -> tuple[float, tuple[float, float]]:
-    """The mean of values (n,) and its interval."""
+def _estimate_mean(values: np.ndarray) -> tuple[float, tuple[float, float]]:
+    """Return the mean of values (n,) and its interval, from a normal distribution."""
     mean, reach = values.mean(), 1.96 * values.std(ddof=1) / math.sqrt(len(values))
     return float(mean), (float(mean - reach), float(mean + reach))
 
@@ -96,62 +97,67 @@ def sensitive_to_start(
     iterations: int,
     singer_mu: float,
 ) -> "FunctionResult":
-    """Claim C46: whether a map of the paper is sensitive to its first value.
+    """Judge claim C46: a map of the paper is sensitive to its first value.
 
     The effect is the map's Lyapunov exponent: the mean logarithm by which a difference grows in an
-    iteration, measured with differences of `apart`. The interval is that of the mean over
+    iteration, measured with differences of `apart`. The interval is the one of the mean over
     sequences, each one unit. + if it lies above 0, - if a difference grows less than e-fold in as
     many iterations as a run has.
 
-    of: the map. singer_mu: mu of the Singer map.
+    of: the map.
+    singer_mu: mu of the Singer map.
     """
     rng = generator(f"tharwat2018/C46/{of}")
-    exponents = [_exponent(rng, of, apart, singer_mu) for _ in range(DIVERGING)]
-    mean, (low, high) = _mean(np.array(exponents))
+    exponents = [_estimate_exponent(rng, of, apart, singer_mu) for _ in range(DIVERGING)]
+    mean, (low, high) = _estimate_mean(np.array(exponents))
     mark = "+" if low > 0 else "-" if high < 1 / iterations else "?"
     return mark, mean, (low, high), DIVERGING
 
 
-def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: float) -> float:
-    """The Lyapunov exponent, per iteration, of a map's sequence from a random start."""
+def _estimate_exponent(
+    rng: np.random.Generator, name: str, apart: float, singer_mu: float
+) -> float:
+    """Return the Lyapunov exponent, per iteration, of a map's sequence from a random start."""
     start = chaotic_maps.draw_start(rng, name, singer_mu)
     values = chaotic_maps.compute_sequence(name, start, LONG, singer_mu).values
+    # Towards the middle, so that the neighbour stays within [0, 1].
     beside = np.where(values[:-1] < 0.5, values[:-1] + apart, values[:-1] - apart)
     following = [
         chaotic_maps.compute_sequence(name, each, 2, singer_mu).values[1] for each in beside
     ]
     grown = np.abs(np.array(following) - values[1:]) / np.abs(beside - values[:-1])
+    # Two values may be mapped to one: the logarithm of 0 would spoil the mean.
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 
 
 def bowl_with_local_minima(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
-    """Claim C16: whether the fitness over one control point is a bowl with several local minima.
+    """Judge claim C16: the fitness over one control point is a bowl with several local minima.
 
-    The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
-    distance to the best node. A bowl has more than 0.5, and a second valley means several minima: +
-    if both hold, - if either fails.
+    The effect is Spearman's correlation, over the nodes of `compute_landscape`, of the fitness with
+    the distance to the best node. A bowl has more than 0.5, and a second valley means several
+    minima: + if both hold, - if either fails.
     """
     from scipy import stats
 
     found = results[check.experiment]
-    surface = landscape(found._replace(runs=select(found.runs, check.where)))
+    surface = compute_landscape(found._replace(runs=select(found.runs, check.where)))
     best = surface.loc[surface["objective"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["objective"], distance).statistic)
-    minima = int(valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).sum())
+    minima = int(find_valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).sum())
     return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
 
 
 def fitness_landscape(results: Results) -> pd.DataFrame:
-    """Figures 10 to 12: `landscape` of runs, with its minima.
+    """Compute Figures 10 to 12: `compute_landscape` of runs, with its minima.
 
     Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
-    fixed (control points that do not move).
+        fixed (control points that do not move).
     """
-    surface = landscape(results)
-    minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
+    surface = compute_landscape(results)
+    minima = surface[find_valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
     stay = np.delete(BEST_KNOWN, MOVED, axis=0)
     parts = {
         "node": surface,
@@ -162,11 +168,12 @@ def fitness_landscape(results: Results) -> pd.DataFrame:
     return pd.concat([frame.assign(part=part) for part, frame in parts.items()], ignore_index=True)
 
 
-def landscape(results: Results) -> pd.DataFrame:
-    """Figures 10 and 11: objective of a Bézier curve with one control point moving over the field,
-    the others as in `BEST_KNOWN`; problem and settings are those of the first run of the swarms.
+def compute_landscape(results: Results) -> pd.DataFrame:
+    """Compute the objective of a Bézier curve with one control point moving over the field, the
+    others as in `BEST_KNOWN` (Figures 10 and 11).
 
-    One row per node of a square grid, y changing fastest; columns: x, y and objective, in units.
+    Problem and settings are those of the first run of the swarms. One row per node of a square
+    grid, y changing fastest; columns: x, y and objective, in units.
     """
     run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
     problem = results.problems[run["problem"]]
@@ -179,15 +186,15 @@ def landscape(results: Results) -> pd.DataFrame:
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
     # In parts, to save memory.
     values = [
-        fitness(part, problem, int(run["samples"]), float(run["beta"]))
+        compute_fitness(part, problem, int(run["samples"]), float(run["beta"]))
         for part in np.array_split(paths, GRID)
     ]
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": np.concatenate(values)})
 
 
-def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
-    """Fitness (n,), in units, of Bézier curves with control points (n, k, 2), start and target
-    included: length L (1 + beta V).
+def compute_fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
+    """Return the fitness (n,), in units, of Bézier curves with control points (n, k, 2), start and
+    target included: length L (1 + beta V).
 
     The violation V is the sum over circles of the mean depth of the samples inside the circle, as a
     share of its radius (eqs. 19 to 22, whose penalty is not printed).
@@ -201,9 +208,9 @@ def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> n
     return length * (1 + beta * violation)
 
 
-def local_minima(values: np.ndarray) -> np.ndarray:
-    """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n,
-    m).
+def find_local_minima(values: np.ndarray) -> np.ndarray:
+    """Tell which values of a grid (n, m) are below all eight neighbours, never those at its
+    edge.
     """
     from scipy import ndimage
 
@@ -214,8 +221,8 @@ def local_minima(values: np.ndarray) -> np.ndarray:
     )
 
 
-def valleys(values: np.ndarray) -> np.ndarray:
-    """Which values of a grid (n, m) are the lowest of a valley of their own: (n, m).
+def find_valleys(values: np.ndarray) -> np.ndarray:
+    """Tell which values of a grid (n, m) are the lowest of a valley of their own: (n, m).
 
     A local minimum belongs to another's valley if a path over neighbouring nodes leads from it to a
     lower node and climbs by no more than `RIM`. A narrow valley oblique to the grid has many such
@@ -223,7 +230,7 @@ def valleys(values: np.ndarray) -> np.ndarray:
     """
     from scipy import ndimage
 
-    lowest = local_minima(values)
+    lowest = find_local_minima(values)
     for node in zip(*np.nonzero(lowest)):
         valley, _ = ndimage.label(values <= values[node] * (1 + RIM), structure=np.ones((3, 3)))
         lowest[node] = values[valley == valley[node]].min() == values[node]
@@ -233,8 +240,8 @@ def valleys(values: np.ndarray) -> np.ndarray:
 def several_homotopy_classes(
     check: "FunctionCheck", results: "Experiments", published: "Published"
 ) -> "FunctionResult":
-    """Claim C17: the number of classes in which runs converge; two paths of one class pass every
-    circle on the same side.
+    """Judge claim C17 by the number of classes in which runs converge; two paths of one class pass
+    every circle on the same side.
 
     A class counts if two or more runs end within 1 % of the shortest path that any run has in it:
     they have reached the same optimum.
@@ -252,7 +259,7 @@ def several_homotopy_classes(
 def least_above(
     check: "FunctionCheck", results: "Experiments", published: "Published", *, limit: int
 ) -> "FunctionResult":
-    """Claim C3: whether the least mean value belongs to more particles than a limit.
+    """Judge claim C3: the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
     numbers start alike and are drawn together.
@@ -275,13 +282,12 @@ def fewer_outliers(
     runs_drawn: int,
     margin: float,
 ) -> "FunctionResult":
-    """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
-    often than for the other maps.
+    """Judge claim C20: box plots of as many runs as the paper's show outliers for Singer less often
+    than for the other maps.
 
-    That one figure shows none for Singer says little: with ten runs, any map shows none in many
-    draws. The effect is the share of draws of `runs_drawn` runs in which neither variant has an
-    outlier, for Singer less the mean of the other maps; its interval comes from resamples of our
-    runs.
+    One figure without any for Singer says little: with ten runs, any map shows none in many draws.
+    The effect is the share of draws of `runs_drawn` runs in which neither variant has an outlier,
+    for Singer less the mean of the other maps; its interval comes from resamples of our runs.
     """
     runs = select(results[check.experiment].runs, check.where)
     rng = generator("tharwat2018/C20")

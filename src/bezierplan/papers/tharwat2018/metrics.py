@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 CLASS_SAMPLES = 2001
 
 
-def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
-    """On which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1,
-    ... that it leaves to its left.
+def compute_homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
+    """Return on which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k
+    = 0, 1, ... that it leaves to its left.
 
     A circle lies to the left if the angle swept by the polyline about its centre is positive. This
     distinguishes classes if no polyline winds round a circle and all have the same ends. NaN
@@ -49,8 +49,8 @@ def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
     step=1.0,
 )
 def homotopy(path: Path, workspace: Workspace) -> float:
-    """The homotopy class of a path."""
-    return homotopy_class(samples_of(path, CLASS_SAMPLES), workspace)
+    """Return the homotopy class of a path (`compute_homotopy_class`)."""
+    return compute_homotopy_class(samples_of(path, CLASS_SAMPLES), workspace)
 
 
 @metric(
@@ -60,11 +60,11 @@ def homotopy(path: Path, workspace: Workspace) -> float:
     on=("circles",),
 )
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN
+    """Tell which runs (n,) have a free path in the homotopy class of the exact shortest one; NaN
     without circles.
     """
     best = {
-        problem: homotopy_class(
+        problem: compute_homotopy_class(
             np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace
         )
         for problem, own in runs.groupby("problem")
@@ -77,8 +77,8 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
 
 @metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
 def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Control points (n,) of all paths evaluated, each counted with as many as the run's path has;
-    NaN where the run has no path.
+    """Count the control points (n,) of all paths evaluated, each counted with as many as the run's
+    path has; NaN where the run has no path.
     """
     points = runs["path_points"].map(len) / 2
     return (runs["evaluations"] * points.where(points > 0)).to_numpy()

@@ -21,11 +21,14 @@ ONE_CELL, RECONNECT, WALK = range(3)
 class Rules(NamedTuple):
     """Settings of `evolve`.
 
-    crossover_probability: of a pair of parents. mutation_probability: of a child. elitism: whether
-    the best so far replaces a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
-    number of cells in a part made by the last two; tries: see `choose_cell_for_prey`.
-    shorter_parts: whether the first child gets the shorter head and the shorter tail, the second is
-    parent 2, and children lose their loops; otherwise tails are swapped.
+    crossover_probability: for a pair of parents.
+    mutation_probability: for a child.
+    elitism: 1 if the best so far replaces a child, else 0.
+    mutation: ONE_CELL, RECONNECT or WALK.
+    longest_part: most cells of a part made by the last two.
+    tries: see `choose_cell_for_prey`.
+    shorter_parts: if true, the first child gets the shorter head and the shorter tail, the second
+        is parent 2, and children lose their loops; otherwise tails are swapped.
     """
 
     crossover_probability: float
@@ -38,7 +41,10 @@ class Rules(NamedTuple):
 
 
 def build_lattice(problem: Problem, corners: int) -> Lattice:
-    """The lattice of a problem on a grid. Raises ValueError as `build_grid_lattice`."""
+    """Build the lattice of a problem on a grid.
+
+    Raises ValueError like `build_grid_lattice`.
+    """
     return build_grid_lattice(
         problem.workspace, problem.start, problem.target, Corners(corners).name
     )
@@ -47,8 +53,10 @@ def build_lattice(problem: Problem, corners: int) -> Lattice:
 def plan_of(
     problem: Problem, cells: np.ndarray, history: np.ndarray, evaluations: int, stop: str
 ) -> Plan:
-    """The plan with a path over the cells (n,) of a grid, or with none for no cells. history: in
-    cells. stop: why the search ended if it found a path.
+    """Build the plan with a path over the cells (n,) of a grid, or with none for no cells.
+
+    history: in cells.
+    stop: why the search ended if it found a path.
     """
     grid, solved = problem.workspace, len(cells) > 0
     path = (
@@ -69,11 +77,12 @@ def plan_of(
 
 @compile_kernel
 def evolve(rng, lattice, paths, sizes, generations, rules):
-    """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length
-    so far (generations + 1,).
+    """Improve some paths by a genetic algorithm.
+
+    Returns the shortest path (n,), and the shortest length so far (generations + 1,).
 
     paths: (population, longest path) with sizes: (population,); overwritten. A child that would not
-    fit stays a copy of its parent.
+        fit stays a copy of its parent.
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
@@ -140,7 +149,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
 
 @allocation_free
 def put(part, path, size):
-    """Write a part after the first `size` cells of a path. Returns the new size."""
+    """Write a part after the first `size` cells of a path and return the new size."""
     for k in range(len(part)):
         path[size + k] = part[k]
     return size + len(part)
@@ -148,7 +157,10 @@ def put(part, path, size):
 
 @allocation_free
 def _replace(path, size, child, cut, marks):
-    """Replace a path by a child if it fits, without its loops if `cut` says so; the new size."""
+    """Replace a path by a child if it fits, and return the new size.
+
+    cut: if true, the child loses its loops before.
+    """
     child_size = cut_loops(child, marks) if cut else len(child)
     if child_size > len(path):
         return size
@@ -157,7 +169,7 @@ def _replace(path, size, child, cut, marks):
 
 @compile_kernel
 def _make_mutant(rng, lattice, path, rules, child, part, marks):
-    """Make a mutant of a path. Returns its size, or 0 if nothing changed."""
+    """Make a mutant of a path and return its size, or 0 if nothing changed."""
     if rules.mutation == ONE_CELL:
         return change_cell(rng, lattice, path, child)
     k, m = draw_integer(rng, 0, len(path)), draw_integer(rng, 0, len(path))
@@ -170,17 +182,20 @@ def _make_mutant(rng, lattice, path, rules, child, part, marks):
         size = walk(rng, lattice, path[first], path[last], rules.tries, part, marks)
     if size == 0:
         return 0
+    # Head, new part and tail, each written behind the one before.
     return put(path[last + 1 :], child, put(part[:size], child, put(path[:first], child, 0)))
 
 
 @allocation_free
 def measure_length(path, lattice):
-    """Length in cells, including the way from the start and to the target; equal numbers of steps
-    give equal lengths, whatever their order.
+    """Return the length in cells, including the way from the start and to the target.
+
+    Equal numbers of steps give equal lengths, whatever their order.
     """
     diagonal = 0
     for k in range(1, len(path)):
         one, other = path[k - 1], path[k]
+        # Steps are counted before they are weighed, or the sum would depend on their order.
         diagonal += (
             lattice.row[one] != lattice.row[other] and lattice.column[one] != lattice.column[other]
         )
@@ -189,7 +204,7 @@ def measure_length(path, lattice):
 
 @allocation_free
 def step_between(lattice, one, other):
-    """Which of the eight steps leads from one cell to another, -1 if none does."""
+    """Return which of the eight steps leads from one cell to another, -1 if none does."""
     for step in range(8):
         if lattice.neighbours[one, step] == other:
             return step
@@ -198,7 +213,7 @@ def step_between(lattice, one, other):
 
 @allocation_free
 def join(lattice, cells, path, marks):
-    """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be
+    """Join cells (n,) to a path by inserting midpoints, and return its size, 0 if they cannot be
     joined within len(path) cells.
 
     Starting with the first pair, the middle cell, with row and column rounded down, is inserted
@@ -237,7 +252,7 @@ def join(lattice, cells, path, marks):
 
 @allocation_free
 def _find_cell_between(lattice, start, end, marks):
-    """The cell that `join` inserts between two cells, -1 if there is none."""
+    """Return the cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
     row = (lattice.row[start] + lattice.row[end]) // 2
@@ -253,10 +268,9 @@ def _find_cell_between(lattice, start, end, marks):
 
 @allocation_free
 def draw_common_cell(rng, first, second, marks):
-    """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the
-    other; in the other, its last occurrence.
+    """Draw an inner cell of one path that is also inside another; return its index in each.
 
-    (0, 0) if there is none.
+    In the second path it is the index of its last occurrence. (0, 0) if there is no such cell.
     """
     for m in range(1, len(second) - 1):
         marks[second[m]] = m
@@ -277,8 +291,10 @@ def draw_common_cell(rng, first, second, marks):
 
 @allocation_free
 def cut_loops(path, marks):
-    """Remove, in place, whatever lies between two visits to a cell, starting with the first
-    revisit. Returns the new size.
+    """Remove, in place, all that lies between two visits to a cell, starting with the first
+    revisit.
+
+    Returns the new size.
     """
     size = 0
     for cell in path:
@@ -298,8 +314,10 @@ def cut_loops(path, marks):
 @allocation_free
 def change_cell(rng, lattice, path, child):
     """Replace a random inner cell by another random cell that neighbours both adjacent cells of the
-    path; if there is none and these two are neighbours, drop it. Returns the child's size, or 0 if
-    nothing changed, as always for paths of fewer than 4 cells.
+    path.
+
+    If there is none and these two are neighbours, the cell is dropped. Returns the child's size, or
+    0 if nothing changed, which is always so for paths of fewer than 4 cells.
     """
     if len(path) < 4:
         return 0
@@ -308,6 +326,7 @@ def change_cell(rng, lattice, path, child):
     for cell in lattice.neighbours[path[k - 1]]:
         if cell >= 0 and cell != path[k] and step_between(lattice, cell, path[k + 1]) >= 0:
             candidates += 1
+            # Each candidate so far stays chosen with equal probability.
             if draw_integer(rng, 0, candidates) == 0:
                 chosen = cell
     if candidates:
@@ -321,8 +340,9 @@ def change_cell(rng, lattice, path, child):
 
 @compile_kernel
 def join_through_random_cell(rng, lattice, first, last, part, marks):
-    """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if
-    that cell is occupied or out of reach.
+    """Join two cells through a random cell of their bounding box.
+
+    Returns the part's size, or 0 if that cell is occupied or out of reach.
     """
     rows = (lattice.row[first], lattice.row[last])
     columns = (lattice.column[first], lattice.column[last])
@@ -335,8 +355,9 @@ def join_through_random_cell(rng, lattice, first, last, part, marks):
 
 @allocation_free
 def walk(rng, lattice, first, last, tries, part, marks):
-    """Forage from one cell until another is reached. Returns the part's size, or 0 if the walk ends
-    early or would exceed the part.
+    """Forage from one cell until another is reached.
+
+    Returns the part's size, or 0 if the walk ends early or would exceed the part.
     """
     part[0] = first
     marks[first] = 1
@@ -355,10 +376,11 @@ def walk(rng, lattice, first, last, tries, part, marks):
 
 @allocation_free
 def choose_cell_for_prey(rng, lattice, cell, target, tries, visited):
-    """A fish's next cell when it looks for prey (ma2020, reference 31), or -1 if all are visited.
+    """Choose a fish's next cell when it looks for prey (ma2020, reference 31), or -1 if all are
+    visited.
 
-    The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a
-    random unvisited neighbour.
+    It is the first of `tries` random neighbours that is unvisited and nearer to the target,
+    otherwise a random unvisited neighbour.
     """
     neighbours = lattice.neighbours[cell]
     present = unvisited = 0
@@ -386,7 +408,7 @@ def choose_cell_for_prey(rng, lattice, cell, target, tries, visited):
 
 @allocation_free
 def compute_distance_square(lattice, one, other):
-    """Square of the distance between the centres of two cells, an integer."""
+    """Return the square of the distance between the centres of two cells, an integer."""
     return (lattice.row[one] - lattice.row[other]) ** 2 + (
         lattice.column[one] - lattice.column[other]
     ) ** 2

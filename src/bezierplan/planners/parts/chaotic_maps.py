@@ -52,12 +52,18 @@ class Sequence(NamedTuple):
 
 
 def compute_sequence(name: str, start: float, length: int, singer_mu: float) -> Sequence:
-    """A map's values from a start in [0, 1], which is the first of them. singer_mu: mu of eq. 10,
-    between 0.9 and 1.08.
+    """Compute a map's values from a start in [0, 1], which is the first of them.
 
-    Values that leave [0, 1] are clipped, and the sequence continues from there; those of
+    Values that leave [0, 1] are clipped, and the sequence continues from there; values of
     `gauss_printed` are left as they are. A sequence has collapsed at the point from which it stands
-    still until its end. Raises ValueError for an unknown map and for a start outside [0, 1].
+    still until its end.
+
+    singer_mu: mu of eq. 10, between 0.9 and 1.08.
+
+    Raises ValueError for an unknown map and for a start outside [0, 1].
+
+    >>> compute_sequence("tent", 0.35, length=3, singer_mu=1.07).values.round(6).tolist()
+    [0.35, 0.5, 0.714286]
     """
     if not 0 <= start <= 1:
         raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
@@ -65,8 +71,9 @@ def compute_sequence(name: str, start: float, length: int, singer_mu: float) -> 
 
 
 def draw_start(rng: np.random.Generator, name: str, singer_mu: float) -> float:
-    """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it
-    dies at 0 or at a fixed point.
+    """Draw a uniform start in (0, 1) from which a map's sequence stays alive.
+
+    It is redrawn while the sequence dies at 0 or at a fixed point.
 
     Raises ValueError for an unknown map and if no start stays alive.
     """
@@ -81,6 +88,7 @@ def draw_start(rng: np.random.Generator, name: str, singer_mu: float) -> float:
 
 
 def _get_number(name: str) -> int:
+    """Return the number of a map; raises ValueError for an unknown one."""
     if name not in MAPS:
         raise ValueError(f"unknown chaotic map {name!r}; known: {', '.join(MAPS)}")
     return MAPS.index(name)
@@ -88,7 +96,7 @@ def _get_number(name: str) -> int:
 
 @compile_kernel
 def _compute_sequence(number, start, length, singer_mu):
-    """The fields of a `Sequence`."""
+    """Compute the fields of a `Sequence`."""
     values = np.empty(length)
     clips = 0
     collapsed_at = 0
@@ -99,6 +107,7 @@ def _compute_sequence(number, start, length, singer_mu):
             if number != Map.gauss_printed and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
                 clips += 1
+            # A sequence that moves again had not collapsed.
             if abs(x - values[k - 1]) >= STANDSTILL:
                 collapsed_at = 0
             elif collapsed_at == 0:
@@ -109,8 +118,8 @@ def _compute_sequence(number, start, length, singer_mu):
 
 @allocation_free
 def _is_alive(number, start, singer_mu):
-    """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a
-    number of steps.
+    """Tell whether a sequence without clipping is neither at (or below) 0 nor at a fixed point
+    after `_TRIAL_STEPS` steps.
     """
     before = x = start
     for _ in range(_TRIAL_STEPS):
@@ -120,7 +129,7 @@ def _is_alive(number, start, singer_mu):
 
 @allocation_free
 def _apply_map(number, x, singer_mu):
-    """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
+    """Return x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
     if number == Map.gauss:
         return _take_fraction(1.0 / x) if x > _LEAST else 0.0
     if number == Map.singer:
@@ -149,5 +158,5 @@ def _apply_map(number, x, singer_mu):
 
 @allocation_free
 def _take_fraction(x):
-    """x mod 1."""
+    """Return x mod 1, the part behind the point."""
     return x - math.floor(x)

@@ -7,8 +7,10 @@ from bezierplan.kernels import allocation_free
 
 @allocation_free
 def compute_q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
-    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in
-    neither, and in only one of two chromosomes.
+    """Return Q, from -1 (the chromosomes share no gene) to 1.
+
+    The arguments are numbers of genes: set in both chromosomes, in neither, and in only one of
+    them.
 
     The paper does not define Q when its denominator is 0: here it is 1 for equal chromosomes,
     otherwise 0.
@@ -21,7 +23,7 @@ def compute_q_statistic(both: int, neither: int, only_one: int, only_other: int)
 
 @allocation_free
 def count_shared(first: np.ndarray, second: np.ndarray) -> int:
-    """Number of elements that two ascending lists share."""
+    """Count the elements that two ascending lists share."""
     i = j = common = 0
     while i < len(first) and j < len(second):
         if first[i] == second[j]:

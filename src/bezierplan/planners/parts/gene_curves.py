@@ -41,9 +41,12 @@ _FREE, _OCCUPIED, _UNKNOWN = range(3)
 class Scratch(NamedTuple):
     """Room for a chromosome's curve, overwritten by each `validate`.
 
-    points: (points, 2) its polygon. pieces: (points, points, 2) those of its pieces. x, y:
-    (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that
-    it touches; before that, columns: the reach of some samples.
+    points: (points, 2) its polygon.
+    pieces: (points, points, 2) those of its pieces.
+    x, y: (samples,).
+    t, power: (samples,) of `write_samples`.
+    columns, rows: (2 samples,) the cells that it touches; before that, columns: the reach of some
+        samples.
     """
 
     points: np.ndarray
@@ -57,7 +60,7 @@ class Scratch(NamedTuple):
 
 
 def prepare_scratch(field: Field) -> Scratch:
-    """Room for any curve on a field."""
+    """Return room for any curve on a field."""
     # `count_parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer
     # than the diagonal, and 3 more for each piece; before them the samples of the first look.
     samples = (
@@ -78,12 +81,15 @@ def prepare_scratch(field: Field) -> Scratch:
 def validate(
     ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch
 ) -> float:
-    """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome,
-    infinite if it is to be deleted. `Obstacles` needs no test, as genes of occupied cells are never
-    set. rules: `modified_genetic.Settings`. scratch: `prepare_scratch` the field.
+    """Return the cost (length) of a chromosome, infinite if it is to be deleted (equation 6 and
+    Section 3.2.2).
 
+    `Obstacles` needs no test, as genes of occupied cells are never set.
+
+    rules: `modified_genetic.Settings`.
     limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than
-    the length.
+        the length.
+    scratch: `prepare_scratch` of the field.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf
@@ -91,7 +97,9 @@ def validate(
     pieces = _write_pieces(points, rules.curve, field.room, scratch)
     if pieces == 0:
         return np.inf
+    # Pieces of a chain are cubic, a single curve has all its points in each piece.
     size = 4 if pieces == len(points) - 3 else len(points)
+    # Most collisions show up in this look at some samples; the walk over all cells comes last.
     sight, least = _look_at_curve(pieces, size, field.room, scratch)
     if sight == _OCCUPIED or _is_near(points, rules.least_distance):
         return np.inf
@@ -110,8 +118,9 @@ def validate(
 
 @compile_inline
 def _write_pieces(points, curve, room, scratch):
-    """Write the pieces of a curve that are walked one after another; returns their number, or 0 if
-    an end of one is in an occupied cell.
+    """Write the pieces of a curve that are walked one after another, and return their number.
+
+    It is 0 if an end of one is in an occupied cell.
     """
     if curve == CurveKind.chain and len(points) > 3:
         for k in range(len(points) - 3):
@@ -119,6 +128,7 @@ def _write_pieces(points, curve, room, scratch):
         return len(points) - 3
     pieces = CUT if len(points) > HIGH else 1
     if pieces > 1:
+        # A look at a few points comes before the cut, which takes longer.
         x, y, ends = scratch.x, scratch.y, QUARTERS * pieces - 1
         write_samples(points, ends + 1, 1, 1, ends, x, y, scratch.t, scratch.power)
         for i in range(ends):
@@ -133,10 +143,11 @@ def _write_pieces(points, curve, room, scratch):
 
 @compile_inline
 def _is_near(points, least_distance):
-    """Return whether two control points are closer than a distance (`Distance Threshold`)."""
+    """Tell whether two control points are closer than a distance (`Distance Threshold`)."""
     for i in range(1, len(points) - 1):
         for j in range(1, i):
             width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
+            # The larger side alone rules out most pairs, without a root.
             if max(width, height) < least_distance and math.hypot(width, height) < least_distance:
                 return True
     return False
@@ -144,9 +155,11 @@ def _is_near(points, least_distance):
 
 @compile_inline
 def _look_at_curve(pieces, size, room, scratch):
-    """What a walk over the cells of a curve would find, if a look at some of its samples tells:
-    `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; and a length that the polyline through its samples
-    has at least.
+    """Return what a walk over the cells of a curve would find, if a look at some of its samples
+    tells.
+
+    This is `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; beside it comes a length that the polyline
+    through its samples has at least.
     """
     sight, least = _FREE, 0.0
     for k in range(pieces):
@@ -163,9 +176,10 @@ def _look_at_curve(pieces, size, room, scratch):
 
 @compile_inline
 def _look_at_piece(piece, least_parts, room, scratch):
-    """`_look_at_curve` of a piece: first of the ends of at least so many equal parts (fewer only
-    if there are fewer samples), then of all samples of those parts that come too close to obstacles
-    to tell.
+    """Return `_look_at_curve` of a piece.
+
+    First come the ends of at least so many equal parts (fewer only if there are fewer samples),
+    then all samples of those parts that come too close to obstacles to tell.
     """
     last = count_parts(piece)
     stride = max(1, last // least_parts)
@@ -200,9 +214,11 @@ def _look_at_piece(piece, least_parts, room, scratch):
 
 @allocation_free
 def _bound_distance_from_chords(piece, count):
-    """How far a piece, cut into `count` parts of equal length in the parameter, gets at most from
-    points at the same parameters on their chords, along x or y: an eighth of the second derivative
-    at most, times the square of a part's length.
+    """Return how far a piece gets at most from its chords, along x or y.
+
+    The piece is cut into `count` parts of equal length in the parameter, and compared with points
+    at the same parameters on their chords: an eighth of the second derivative at most, times the
+    square of a part's length.
     """
     degree = len(piece) - 1
     most = 0.0
@@ -214,8 +230,9 @@ def _bound_distance_from_chords(piece, count):
 
 @allocation_free
 def _is_free_part(x, y, reach, i, away):
-    """Whether the free cells around both ends of a part hold all its samples: a step, which is less
-    than a cell, lies in both.
+    """Tell whether the free cells around both ends of a part hold all its samples.
+
+    A step, which is less than a cell, lies in both.
     """
     between = max(abs(x[i + 1] - x[i]), abs(y[i + 1] - y[i]))
     return between + 2.0 * away + 1.0 <= reach[i] - 1 + reach[i + 1] - 1
@@ -223,9 +240,10 @@ def _is_free_part(x, y, reach, i, away):
 
 @allocation_free
 def _look_at_samples(x, y, room):
-    """`_look_at_curve` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE`
-    if the cells of all are free, as well as those whose corner a step between two samples may cut.
-    After one with free cells all around it the next ones need no look.
+    """Return `_look_at_curve` of consecutive samples.
+
+    `_OCCUPIED` means that one is in an occupied cell; `_FREE` that the cells of all are free, and
+    also those whose corner a step between two samples may cut.
     """
     sight = _FREE
     s = 0
@@ -237,15 +255,18 @@ def _look_at_samples(x, y, room):
             reach == 1 and s > 0 and _can_cut_corner(x[s - 1], y[s - 1], x[s], y[s], room)
         ):
             sight = _UNKNOWN
+        # With free cells all around a sample, the next ones need no look.
         s += max(reach, 1)
     return sight
 
 
 @allocation_free
 def _count_free_samples(x, y, room):
-    """How many samples from one on, itself included, touch free cells only, whichever way they
-    lead: 0 if its cell is occupied, -1 if that cannot be told. A sample on a grid line may count to
-    the cell on either side.
+    """Return how many samples from one on, itself included, touch free cells only, whichever way
+    they lead.
+
+    It is 0 if the sample's cell is occupied, -1 if that cannot be told: a sample on a grid line may
+    count to the cell on either side.
     """
     rows, columns = room.shape
     # There is no cell beyond the upper and right borders, on which start and target may lie.
@@ -258,8 +279,9 @@ def _count_free_samples(x, y, room):
 
 @allocation_free
 def _can_cut_corner(x0, y0, x, y, room):
-    """Whether the step between two samples, the second of which is within a free cell, may cut the
-    corner of an occupied cell.
+    """Tell whether the step between two samples may cut the corner of an occupied cell.
+
+    The second sample is within a free cell.
     """
     rows, columns = room.shape
     before_column, before_row = min(int(x0), columns - 1), min(int(y0), rows - 1)
@@ -275,7 +297,9 @@ def _can_cut_corner(x0, y0, x, y, room):
 @allocation_free
 def _write_piece(points, k, piece):
     """Write the control points (4, 2) of piece k of a chain of cubic pieces with the same tangent
-    and curvature where they meet (Section 2.1): a clamped uniform B-spline of four or more points.
+    and curvature where they meet (Section 2.1).
+
+    The chain is a clamped uniform B-spline of four or more points.
     """
     pieces = len(points) - 3
     before, after = min(k, 1), min(pieces - k - 1, 1)  # steps to the next knot on either side
@@ -293,7 +317,7 @@ def _write_piece(points, k, piece):
 
 @compile_inline
 def _write_samples_of_piece(piece, place, scratch):
-    """Write x and y of a piece's samples from a place on; returns their number."""
+    """Write x and y of a piece's samples from a place on, and return their number."""
     x, y = scratch.x[place:], scratch.y[place:]
     last = count_parts(piece)
     write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)

@@ -16,11 +16,14 @@ from bezierplan.workspaces.lattice import compute_distances
 class Field(NamedTuple):
     """Where the curves lie; lengths in cells from the grid's corner.
 
-    occupied: bool (rows, columns). room: (rows, columns) steps in any of eight directions to the
-    nearest occupied cell, 0 for an occupied one; the longer side where all cells are free. points:
-    (genes, 2) centre of each gene's cell, in the order in which control points are joined. index:
-    (genes,) its place on the lattice, column by column. settable: (genes,) whether it may be 1;
-    choices: the genes that may. start, target: x and y.
+    occupied: bool (rows, columns).
+    room: (rows, columns) steps in any of eight directions to the nearest occupied cell, 0 for an
+        occupied one; the longer side where all cells are free.
+    points: (genes, 2) centre of each gene's cell, in the order in which control points are joined.
+    index: (genes,) its place on the lattice, column by column.
+    settable: (genes,) whether it may be 1.
+    choices: the genes that may.
+    start, target: x and y.
     """
 
     occupied: np.ndarray
@@ -34,8 +37,9 @@ class Field(NamedTuple):
 
 
 def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
-    """Return the genes of a grid, in the order in which they are joined; ends: (2, 2) both ends in
-    cells.
+    """Build the genes of a grid, in the order in which they are joined.
+
+    ends: (2, 2) both ends in cells.
 
     Raises ValueError if no cell of the lattice is free.
     """
@@ -51,6 +55,7 @@ def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: st
     )
     column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
     points = np.column_stack([column, row]) + 0.5
+    # The lattice is a square; beyond a grid's shorter side all is occupied.
     walls = np.pad(grid.occupied, ((0, longer - rows), (0, longer - columns)), constant_values=True)
     at_end = (points == np.floor(ends)[:, None] + 0.5).all(axis=2).any(axis=0)
     settable = ~walls[row, column] & ~at_end
@@ -62,6 +67,7 @@ def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: st
     if point_order == "projection":
         along = ends[1] - ends[0]
         left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
+        # Points of the same projection are joined from left to right.
         index = np.lexsort((-left, (points - ends[0]) @ along))
     elif point_order == "geodesic":
         far = compute_distances(walls, *np.floor(ends[0, ::-1]).astype(int))
@@ -80,8 +86,9 @@ def build_field(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: st
 
 
 def find_genes_at(points: np.ndarray, field: Field) -> np.ndarray:
-    """The free genes, ascending, in whose cells some points (n, 2) lie, in cells; without those
-    behind the start, to which a robot that has passed them would drive back.
+    """Find the free genes, ascending, in whose cells some points (n, 2) lie, in cells.
+
+    Genes behind the start are left out: a robot that has passed them would drive back.
     """
     apart = np.abs(points[:, None] - field.points).max(axis=2, initial=0.0)
     genes = apart.argmin(axis=1)
@@ -98,7 +105,7 @@ def build_polygon(ones: np.ndarray, field: Field) -> np.ndarray:
 
 @allocation_free
 def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray) -> int:
-    """Write the polygon of a chromosome (n,) to the first n + 2 of some points, and return their
+    """Write the polygon of a chromosome (n,) to the first n + 2 of some points; return their
     number.
     """
     count = len(ones)

@@ -15,8 +15,11 @@ from bezierplan.planners.parts.sorting import sort
 
 
 class Pool(NamedTuple):
-    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many;
-    cost (places,) the inverse of the fitness.
+    """Chromosomes of a population and its offspring.
+
+    ones: (places, room) the genes that are 1, ascending.
+    count: (places,) how many there are.
+    cost: (places,) the inverse of the fitness.
     """
 
     ones: np.ndarray
@@ -26,7 +29,7 @@ class Pool(NamedTuple):
 
 @compile_kernel
 def prepare_pool(places: int, room: int) -> Pool:
-    """A pool with room for `places` chromosomes of `room` genes each."""
+    """Return a pool with room for `places` chromosomes of `room` genes each."""
     return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places))
 
 
@@ -40,7 +43,7 @@ def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> No
 
 @compile_kernel
 def select(pool: Pool, survivors: int, fill: int) -> None:
-    """Move the best of the first chromosomes to the front, in place; ties in their order."""
+    """Move the best of the first `fill` chromosomes to the front, in place; ties in their order."""
     highest = pool.cost[:survivors].max()
     # Some that cost no more are enough, so the others need no sorting.
     order, count = np.empty(fill, dtype=np.int64), 0
@@ -49,6 +52,7 @@ def select(pool: Pool, survivors: int, fill: int) -> None:
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
     best, most = order[:survivors], pool.count.max()
+    # No list is longer than `most`, so the rest of the room need not be copied.
     pool.ones[:survivors, :most] = pool.ones[best, :most]
     pool.count[:survivors] = pool.count[best]
     pool.cost[:survivors] = pool.cost[best]
@@ -65,8 +69,9 @@ def place_of(genes: np.ndarray, count: int, gene: int) -> int:
 
 @allocation_free
 def insert(genes: np.ndarray, count: int, at: int, gene: int) -> int:
-    """Write a gene to its place in a list, in place; returns how many are 1. A gene that does not
-    fit is lost.
+    """Insert a gene into a list, in place, and return how many are 1.
+
+    A gene that does not fit is lost.
     """
     if count == len(genes):
         return count
@@ -78,7 +83,7 @@ def insert(genes: np.ndarray, count: int, at: int, gene: int) -> int:
 
 @allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
-    """Flip a gene of a list, in place; returns how many are 1."""
+    """Flip a gene of a list, in place, and return how many are 1."""
     place = place_of(genes, count, gene)
     if place == count or genes[place] != gene:
         return insert(genes, count, place, gene)
@@ -89,18 +94,24 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 @allocation_free
 def draw_gap(rng: np.random.Generator, log_stay: float) -> int:
-    """Number of genes left unchanged before the next change; 2**31 stands for more than there are
-    genes. log_stay: the logarithm of the probability that a gene does not change.
+    """Draw how many genes stay unchanged before the next change; 2**31 is more than there are
+    genes.
+
+    log_stay: the logarithm of the probability that a gene does not change.
     """
     if log_stay == 0.0:
         return 2**31
+    # The gaps of independent trials have a geometric distribution; 1 - random() is never 0.
     return int(min(math.log(1.0 - rng.random()) / log_stay, 2.0**31)) if log_stay > -np.inf else 0
 
 
 @allocation_free
 def cross(pool: Pool, head: int, tail: int, cut: int, index: np.ndarray, child: np.ndarray) -> int:
-    """Write, to a child, the genes of one chromosome with an index before a cut and of another from
-    it on; returns how many are 1.
+    """Write, to a child, the genes of one chromosome before a cut and of another from it on.
+
+    index: (genes,) the place on the lattice that is compared with the cut.
+
+    Returns how many are 1.
     """
     i = j = count = 0
     while i < pool.count[head] or j < pool.count[tail]:
@@ -126,9 +137,12 @@ def compute_q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 
 
 class Kinds(NamedTuple):
-    """Distinct chromosomes of a pool, of which many are alike. head: (places,) a place of each in
-    the pool; copies: (places,) how many there are; q: (places, places) the Q of each with those
-    before it. marks: (genes,) scratch, all 0 before and after.
+    """Distinct chromosomes of a pool in which many are alike.
+
+    head: (places,) a place of each in the pool.
+    copies: (places,) how many there are.
+    q: (places, places) the Q of each with those before it.
+    marks: (genes,) scratch, all 0 before and after.
     """
 
     head: np.ndarray
@@ -150,7 +164,7 @@ def prepare_kinds(places: int, genes: int) -> Kinds:
 
 @allocation_free
 def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> int:
-    """Count the chromosomes at the places from `first` on among `count` kinds; returns how many
+    """Count the chromosomes at the places from `first` on among `count` kinds, and return how many
     kinds there are then.
     """
     for place in range(first, fill):
@@ -166,8 +180,9 @@ def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> 
 
 @allocation_free
 def compute_mean_q(kinds: Kinds, count: int, fill: int) -> float:
-    """Return the mean Q of all pairs of `fill` chromosomes of `count` kinds; that of two equal ones
-    is 1.
+    """Return the mean Q of all pairs of `fill` chromosomes of `count` kinds.
+
+    Two equal ones have Q = 1.
     """
     total = 0.0
     for kind in range(count):
@@ -180,7 +195,8 @@ def compute_mean_q(kinds: Kinds, count: int, fill: int) -> float:
 
 @allocation_free
 def _is_kind(pool, place, head):
-    """Return whether two places hold equal chromosomes, whose costs are then equal."""
+    """Tell whether two places hold equal chromosomes, whose costs are then equal."""
+    # Costs first: one comparison tells most different chromosomes apart.
     return pool.cost[place] == pool.cost[head] and is_same(
         pool.ones[place, : pool.count[place]], pool.ones[head, : pool.count[head]]
     )
@@ -211,7 +227,10 @@ _REMEMBERED = 1024
 
 @compile_kernel
 def prepare_memory(room: int) -> Pool:
-    """A memory of the costs of chromosomes of `room` genes each; newer ones replace older ones."""
+    """Return a memory for the costs of chromosomes of `room` genes each.
+
+    Newer ones replace older ones.
+    """
     memory = prepare_pool(_REMEMBERED, room)
     memory.count[:] = -1
     return memory
@@ -219,7 +238,8 @@ def prepare_memory(room: int) -> Pool:
 
 @allocation_free
 def find_entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
-    """The place of a chromosome in a memory, and whether it is there."""
+    """Return the place of a chromosome in a memory, and whether it is there."""
+    # A hash; the odd factor is 2**64 over the golden ratio, which spreads neighbouring numbers.
     mixed = np.uint64(len(ones))
     for gene in ones:
         mixed = (mixed ^ np.uint64(gene)) * np.uint64(0x9E3779B97F4A7C15)

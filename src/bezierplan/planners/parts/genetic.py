@@ -26,8 +26,11 @@ def check_pairs(settings: dict) -> None:
 
 
 def check_curve(settings: dict, points: str) -> None:
-    """Raise ValueError, naming the setting and what is expected, for too few free control points,
-    whose number is the setting `points`, or too few samples for a kind of curve.
+    """Check that a kind of curve has enough free control points and samples.
+
+    points: name of the setting that is the number of free control points.
+
+    Raises ValueError, naming the setting and what is expected.
     """
     curve, samples = settings["curve"], settings["samples"]
     least = curves.least_points(curve) - 2
@@ -44,15 +47,16 @@ def check_curve(settings: dict, points: str) -> None:
 
 @allocation_free
 def copy(source: np.ndarray, target: np.ndarray) -> None:
-    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
+    """Copy a one-dimensional array, which compiles much faster than numpy's slice assignment."""
     for k in range(len(source)):
         target[k] = source[k]
 
 
 @compile_kernel
 def draw_parents(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
-    """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above
-    0 (song2016, eq. 10).
+    """Draw parents with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10).
+
+    Returns their indices (draws,).
     """
     wheel = np.cumsum(fitness)
     parents = np.empty(draws, dtype=np.int64)
@@ -71,6 +75,7 @@ def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> No
     """
     gene = cut // bits
     behind = (1 << (bits - cut % bits)) - 1
+    # The gene that the cut divides: bits behind it change over where the two differ.
     difference = (first[gene] ^ second[gene]) & behind
     first[gene] ^= difference
     second[gene] ^= difference
@@ -89,11 +94,14 @@ def breed(
     unit: int,
     bits: int,
 ) -> np.ndarray:
-    """Write as many children as there are parents (n, genes + 2 margin): copies of parents drawn by
-    the reciprocal of their cost (n,), of which pairs exchange their tails with a probability.
-    Returns the indices (n,) of the parents drawn.
+    """Write as many children as there are parents (n, genes + 2 margin), and return the indices
+    (n,) of the parents drawn.
 
-    margin: number of fixed genes at both ends. unit: number of bits whose multiples are cut.
+    Children are copies of parents drawn by the reciprocal of their cost (n,); pairs of them
+    exchange their tails with a probability.
+
+    margin: number of fixed genes at both ends.
+    unit: number of bits whose multiples are cut.
     """
     drawn = draw_parents(rng, 1.0 / cost, len(cost))
     for i in range(len(drawn)):
@@ -101,6 +109,7 @@ def breed(
     inner = children[:, margin : children.shape[1] - margin]
     cuts = bits * inner.shape[1] // unit
     for i in range(0, len(drawn), 2):
+        # The number is drawn even where no cut is possible, so the other draws do not depend on it.
         if rng.random() < probability and cuts > 1:
             swap_tails(inner[i], inner[i + 1], unit * draw_integer(rng, 1, cuts), bits)
     return drawn
@@ -108,7 +117,7 @@ def breed(
 
 @allocation_free
 def is_same(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two chromosomes, or lists of genes, are equal."""
+    """Tell whether two chromosomes, or lists of genes, are equal."""
     if len(one) != len(other):
         return False
     for k in range(len(one)):
@@ -119,17 +128,16 @@ def is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 @allocation_free
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
-    """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section
-    III-E: mutation).
+    """Complement, in place, one bit of a chromosome (song2016, Section III-E: mutation).
+
+    position: counted from its beginning.
     """
     chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)
 
 
 @allocation_free
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
-    """Replace, in place, one random gene of a chromosome by a random allele, which may equal the
-    old gene.
-    """
+    """Replace, in place, a random gene of a chromosome by a random allele, maybe the old one."""
     chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[draw_integer(rng, 0, len(alleles))]
 
 
@@ -137,7 +145,7 @@ def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.nd
 def flip_bit(
     rng: np.random.Generator, chromosome: np.ndarray, gene: int, bits: int, legal: np.ndarray
 ) -> None:
-    """Complement, in place, a random bit of a gene. A bit that makes it no allele is redrawn.
+    """Complement, in place, a random bit of a gene; a bit that makes it no allele is redrawn.
 
     legal: bool (2**bits,), whether a number is an allele.
     """

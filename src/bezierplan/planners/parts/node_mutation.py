@@ -37,10 +37,12 @@ def mutate(
     rules: NamedTuple,
     neighbours: np.ndarray,
 ) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3; returns how many it evaluated.
+    """Apply the operator once to a path of cells (n,), n at least 3, and return how many it
+    evaluated.
 
-    alleles: cells for random mutation. rules: `node_genetic.Settings`. neighbours:
-    (MOST_NEIGHBOURS,) scratch.
+    alleles: cells for random mutation.
+    rules: `node_genetic.Settings`.
+    neighbours: (MOST_NEIGHBOURS,) scratch.
     """
     if rules.mutation == Mutation.random:
         path[1 + draw_below(rng, len(path) - 2)] = alleles[draw_below(rng, len(alleles))]
@@ -63,7 +65,7 @@ def mutate(
 
 @allocation_free
 def _mutate_until_feasible(rng, path, alleles, ground):
-    """Random mutation, repeated until the path is feasible."""
+    """Repeat random mutation until the path is feasible."""
     for _ in range(_MOST_REPAIRS):
         k = 1 + draw_below(rng, len(path) - 2)
         before = path[k]
@@ -76,7 +78,7 @@ def _mutate_until_feasible(rng, path, alleles, ground):
 
 @allocation_free
 def _draw_blocked_node(rng, path, ground, beside_obstacle):
-    """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
+    """Draw an inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
     count = 0
     for k in range(1, len(path) - 1):
         count += _has_obstacle(path, k, ground, beside_obstacle)
@@ -93,8 +95,8 @@ def _draw_blocked_node(rng, path, ground, beside_obstacle):
 
 @allocation_free
 def _has_obstacle(path, k, ground, beside_obstacle):
-    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight
-    cells around the node is occupied.
+    """Tell whether the edge from node k to the next one meets an obstacle, or whether one of the
+    eight cells around the node is occupied.
     """
     if not beside_obstacle:
         return count_obstacles_on(ground, path[k], path[k + 1]) > 0
@@ -105,7 +107,7 @@ def _has_obstacle(path, k, ground, beside_obstacle):
 @allocation_free
 def _move_to_best_neighbour(path, k, ground, rules, neighbours):
     """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4;
-    reference 12).
+    reference 12), and return how many it compared.
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
@@ -123,7 +125,7 @@ def _move_to_best_neighbour(path, k, ground, rules, neighbours):
 
 @compile_inline
 def _compute_cost_through(path, k, cell, ground, penalty):
-    """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
+    """Return the energy plus penalty of the two edges that node k would have in the given cell."""
     encounters = count_obstacles_on(ground, path[k - 1], cell) + count_obstacles_on(
         ground, cell, path[k + 1]
     )
@@ -138,10 +140,13 @@ def _compute_cost_through(path, k, cell, ground, penalty):
 def _mutate_as_reference_21(rng, path, ground, rules, neighbours):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies
     in the direction of the target and whose two edges are free (reference 21).
+
+    Returns how many it tried.
     """
     k = 1 + draw_below(rng, len(path) - 2)
     count = list_free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     for tried in range(count):
+        # The next of a random order is drawn only when it is needed.
         chosen = tried + draw_below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
@@ -157,8 +162,8 @@ def _mutate_as_reference_21(rng, path, ground, rules, neighbours):
 
 @allocation_free
 def _is_towards(start, cell, target, columns):
-    """Whether a cell's direction to the target makes less than a right angle with that from the
-    start to the target.
+    """Tell whether a cell's direction to the target makes less than a right angle with that from
+    the start to the target.
     """
     across, up = target % columns - cell % columns, target // columns - cell // columns
     whole_across = target % columns - start % columns

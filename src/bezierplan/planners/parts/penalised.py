@@ -32,8 +32,10 @@ class Polygonal(NamedTuple):
     """Polygonal obstacles, for the kernels, in units.
 
     edges: (edges, 4), x and y of both ends of the edges of all polygons and their holes, polygon by
-    polygon. first: (obstacles + 1,), where each polygon's edges begin. boxes: (obstacles, 4), left,
-    right, bottom and top. deepest: (obstacles,), the largest depth in it.
+        polygon.
+    first: (obstacles + 1,), where each polygon's edges begin.
+    boxes: (obstacles, 4), left, right, bottom and top.
+    deepest: (obstacles,), the largest depth in it.
     """
 
     edges: np.ndarray
@@ -45,10 +47,12 @@ class Polygonal(NamedTuple):
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
-    ends: (2, samples), the contributions of start and target to the samples, by coordinate. free:
-    (n, samples), the weights of the free control points. balls: (obstacles, 3), centre and
-    radius of circles, in units. polygons: the other obstacles, in the plane. penalty:
-    the rule's number. beta: its factor.
+    ends: (2, samples), the contributions of start and target to the samples, by coordinate.
+    free: (n, samples), the weights of the free control points.
+    balls: (obstacles, 3), centre and radius of circles, in units.
+    polygons: the other obstacles, in the plane.
+    penalty: the rule's number.
+    beta: its factor.
     """
 
     ends: np.ndarray
@@ -61,8 +65,8 @@ class Objective(NamedTuple):
 
 @cache
 def compute_basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
-    samples of a curve.
+    """Compute the weights of start and target (2, samples) and of the free control points (n,
+    samples) at the samples of a curve.
     """
     weights = curves.sample_matrix(curve, control_points + 2, samples).T
     # A copy, since numba would compile all kernels once more for an array that is read-only.
@@ -73,13 +77,13 @@ def compute_basis(curve: str, control_points: int, samples: int) -> tuple[np.nda
 
 @cache
 def find_free_points(curve: str, control_points: int) -> np.ndarray:
-    """Which control points of a curve are free (n,)."""
+    """Return which control points of a curve are free (n,)."""
     return np.delete(np.arange(control_points + 2), curves.ends(curve))
 
 
 @allocation_free
 def compute_fitness(length: float, violation: float, objective: Objective) -> float:
-    """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which
+    """Combine the length of a path with the penalty for its violation (tharwat2018, eq. 22, which
     leaves the penalty open).
     """
     if objective.penalty == Penalty.multiply:
@@ -113,7 +117,7 @@ def write_curve(particle: np.ndarray, objective: Objective, curve: np.ndarray) -
 
 @allocation_free
 def bound_length(curve: np.ndarray) -> float:
-    """No more than the length of a curve (2, samples): that of four chords."""
+    """Return no more than the length of a curve (2, samples): the length of four chords."""
     last = curve.shape[1] - 1
     total = 0.0
     for k in range(4):
@@ -126,7 +130,8 @@ def bound_length(curve: np.ndarray) -> float:
 
 @allocation_free
 def measure_length(curve: np.ndarray, chords: np.ndarray) -> float:
-    """Length of the polyline through the samples of a curve (2, samples) (tharwat2018, eq. 19).
+    """Return the length of the polyline through the samples of a curve (2, samples) (tharwat2018,
+    eq. 19).
 
     chords: (samples,) scratch.
     """
@@ -149,8 +154,10 @@ def measure_length(curve: np.ndarray, chords: np.ndarray) -> float:
 
 
 def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
-    """The circles of a workspace, grown by a distance in units: (obstacles, 3), centre and radius;
-    none among polygons.
+    """Return the circles of a workspace, grown by a distance in units: (obstacles, 3), centre and
+    radius.
+
+    There are none among polygons.
     """
     if isinstance(workspace, Polygons):
         return np.empty((0, 3))
@@ -158,7 +165,7 @@ def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
 
 
 def grow_polygons(workspace: Circles | Polygons, d_min: float) -> Polygonal:
-    """The polygons of a workspace, grown by a distance in units; none among circles."""
+    """Return the polygons of a workspace, grown by a distance in units; none among circles."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
         return Polygonal(
             np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0)
@@ -180,7 +187,7 @@ def grow_polygons(workspace: Circles | Polygons, d_min: float) -> Polygonal:
 
 
 def _list_sides(ring: "LinearRing") -> np.ndarray:
-    """The sides (n, 4) of a ring."""
+    """List the sides (n, 4) of a ring."""
     corners = np.array(ring.coords)
     return np.hstack([corners[:-1], corners[1:]])
 
@@ -189,12 +196,14 @@ def _list_sides(ring: "LinearRing") -> np.ndarray:
 def measure_violation(
     curve: np.ndarray, objective: Objective, scratch: np.ndarray
 ) -> tuple[float, int]:
-    """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
+    """Return the violation of a path, and its number of samples in obstacles, both summed over the
+    obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a
     share of the largest depth (tharwat2018, eqs. 20 and 21).
 
-    curve: (2, samples). scratch: (samples,) or longer.
+    curve: (2, samples).
+    scratch: (samples,) or longer.
     """
     of_balls, in_balls = _measure_among_balls(curve, objective.balls, scratch)
     of_polygons, in_polygons = _measure_among_polygons(curve[0], curve[1], objective.polygons)
@@ -203,7 +212,7 @@ def measure_violation(
 
 @allocation_free
 def _measure_among_polygons(x, y, polygons):
-    """The parts of `measure_violation` for polygons."""
+    """Return the parts of `measure_violation` for polygons."""
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(polygons.deepest)):
@@ -226,12 +235,11 @@ def _measure_among_polygons(x, y, polygons):
 
 @allocation_free
 def _measure_depth(x, y, edges):
-    """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to
-    the right crosses an even number of edges.
-    """
+    """Return the distance of a point to the nearest edge (n, 4) of a polygon, 0 outside of it."""
     inside = False
     for e in range(len(edges)):
         x1, y1, x2, y2 = edges[e]
+        # A ray to the right crosses an odd number of edges if it starts inside.
         if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
             inside = not inside
     if not inside:
@@ -247,7 +255,7 @@ def _measure_depth(x, y, edges):
 
 @allocation_free
 def _measure_among_balls(curve, balls, squares):
-    """The parts of `measure_violation` for circles (obstacles, 3)."""
+    """Return the parts of `measure_violation` for circles (obstacles, 3)."""
     samples = curve.shape[1]
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0

@@ -1,6 +1,4 @@
-"""Random integers in kernels, for `rng.integers` in compiled code makes an array for each
-number.
-"""
+"""Random integers in kernels: `rng.integers` in compiled code makes an array for each number."""
 
 import numpy as np
 from numba.np.random.random_methods import buffered_bounded_lemire_uint32
@@ -10,8 +8,10 @@ from bezierplan.kernels import allocation_free
 
 @allocation_free
 def draw_integer(rng: np.random.Generator, low: int, high: int) -> int:
-    """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times
-    faster; high - low must lie between 1 and 2**32 - 1.
+    """Draw the number that `rng.integers(low, high)` gives (Lemire 2019, in numpy), many times
+    faster.
+
+    high - low must lie between 1 and 2**32 - 1.
     """
     # numpy draws nothing if there is no choice.
     return (
@@ -23,5 +23,5 @@ def draw_integer(rng: np.random.Generator, low: int, high: int) -> int:
 
 @allocation_free
 def draw_below(rng: np.random.Generator, count: int) -> int:
-    """A uniform integer below `count` from a single random number of `rng.random`."""
+    """Draw a uniform integer below `count` from a single random number of `rng.random`."""
     return int(rng.random() * count)

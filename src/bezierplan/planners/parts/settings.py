@@ -29,8 +29,9 @@ UNITS = "units"
 
 
 class Range(NamedTuple):
-    """Limits of a setting's value, both inclusive. Infinity is a value only where it is given as a
-    limit: few planners end with it.
+    """Limits of a setting's value, both inclusive.
+
+    Infinity is a value only where it is given as a limit: few planners end with it.
     """
 
     low: float = -sys.float_info.max
@@ -43,7 +44,7 @@ class Range(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a setting means, in one line; where the paper gives it; its unit, empty if none."""
+    """Meaning of a setting in one line, its place in the paper, and its unit, empty if none."""
 
     text: str
     source: str = ASSUMED
@@ -71,7 +72,7 @@ class Setting(NamedTuple):
     about: About | None
 
     def __str__(self) -> str:
-        """The accepted values."""
+        """Describe the accepted values, for messages and help."""
         if self.words:
             return "one of " + ", ".join(map(str, self.words))
         number = {bool: "true or false", int: "a whole number", float: "a number"}[self.kind]
@@ -79,13 +80,14 @@ class Setting(NamedTuple):
 
     @property
     def meaning(self) -> str:
-        """The text, the unit and the source in one line."""
+        """Join the text, the unit and the source in one line."""
         text, source, unit = self.about or About("", "")
         return text + (f" [{unit}]" if unit else "") + (f" ({source})" if source else "")
 
     def number(self, value: Any) -> Any:
-        """A value for kernels: a choice as its number; a decimal never as an integer,
-        which would compile kernels again.
+        """Convert a value for kernels: a choice becomes its number, and a decimal stays one.
+
+        An integer in place of a decimal would compile kernels again.
         """
         if isinstance(self.kind, EnumMeta):
             return int(self.kind[value])
@@ -93,8 +95,13 @@ class Setting(NamedTuple):
 
 
 def read_setting(annotation: Any) -> Setting:
-    """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`,
-    `float`, a `Literal` or an `IntEnum`, or one of these `Annotated` with a `Range` and an `About`.
+    """Read the setting that an annotation declares.
+
+    Raises TypeError unless it is `bool`, `int`, `float`, a `Literal` or an `IntEnum`, or one of
+    these `Annotated` with a `Range` and an `About`.
+
+    >>> read_setting(typing.Annotated[int, Range(1, 9)]).limits
+    Range(low=1, high=9)
     """
     notes: tuple = ()
     if typing.get_origin(annotation) is typing.Annotated:
@@ -113,9 +120,10 @@ def read_setting(annotation: Any) -> Setting:
 
 
 def find_setting_fault(declaration: Setting, value: Any) -> str | None:
-    """What is expected instead of a setting's value, or None if the value is valid."""
+    """Say what is expected instead of a setting's value, or return None if the value is valid."""
     if declaration.words:
         return None if value in declaration.words else str(declaration)
+    # Python counts `True` as an integer, a file of settings does not.
     accepted = (int, float) if declaration.kind is float else declaration.kind
     if not isinstance(value, accepted) or (
         isinstance(value, bool) and declaration.kind is not bool
@@ -131,8 +139,9 @@ def find_setting_fault(declaration: Setting, value: Any) -> str | None:
 
 
 def list_settings(plan: Callable[..., Any]) -> dict[str, Setting]:
-    """Settings of a planner's function `plan`, its keyword-only arguments, by name and in their
-    order. Raises TypeError or NameError for an annotation that declares none.
+    """List the settings of a planner's function `plan`, its keyword-only arguments, by name.
+
+    Raises TypeError or NameError for an annotation that declares none.
     """
     parameters = inspect.signature(plan, eval_str=True).parameters.values()
     return {
@@ -147,11 +156,15 @@ T = TypeVar("T", bound=tuple)
 
 @cache
 def _list_declared(settings: type) -> dict[str, Setting]:
+    """List the settings that a class of settings declares, by name."""
     return {name: read_setting(annotation) for name, annotation in settings.__annotations__.items()}
 
 
 def fill_settings(settings: type[T], values: dict[str, Any]) -> T:
-    """A class of settings with values by name. Raises TypeError for a missing or unknown name."""
+    """Fill a class of settings with values by name.
+
+    Raises TypeError for a missing or unknown name.
+    """
     declared = _list_declared(settings)
     return settings(
         **{
@@ -162,7 +175,7 @@ def fill_settings(settings: type[T], values: dict[str, Any]) -> T:
 
 
 def convert_to_cells(settings: T, cell: float) -> T:
-    """The same settings for kernels that count in cells: units are divided by a cell's side."""
+    """Return the same settings for kernels that count in cells: units divided by a cell's side."""
     lengths = [
         name
         for name, each in _list_declared(type(settings)).items()
@@ -172,8 +185,9 @@ def convert_to_cells(settings: T, cell: float) -> T:
 
 
 def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Have `plan(problem, rng, settings, ...)`, with one argument for each of these classes, called
-    with the settings by name.
+    """Have `plan(problem, rng, settings, ...)` called with the settings by name.
+
+    classes: types of its arguments `settings`, in their order.
     """
 
     # A name that no class has is left to the first, which refuses it.
@@ -181,14 +195,16 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
 
     def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(plan)
-        def planned(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
+        def call_by_name(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
             parts: list[dict[str, Any]] = [{} for _ in classes]
             for name, value in values.items():
                 parts[place.get(name, 0)][name] = value
             return plan(problem, rng, *map(fill_settings, classes, parts), *further)
 
+        # What asks for arguments or help sees the settings by name, too.
         signature = inspect.signature(plan)
         kept = list(signature.parameters.values())
+        # The tuples stand behind `problem` and `rng`.
         del kept[2 : 2 + len(classes)]
         names = {
             name: annotation
@@ -199,15 +215,15 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name])
             for name in names
         ]
-        planned.__signature__ = signature.replace(parameters=[*kept, *keywords])
+        call_by_name.__signature__ = signature.replace(parameters=[*kept, *keywords])
         told = [
             f"{name} : {each}\n    {each.meaning}"
             for part in classes
             for name, each in _list_declared(part).items()
         ]
-        planned.__doc__ = "\n".join(
+        call_by_name.__doc__ = "\n".join(
             [inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told]
         )
-        return planned
+        return call_by_name
 
     return decorate

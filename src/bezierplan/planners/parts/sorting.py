@@ -1,4 +1,4 @@
-"""Sorting values, for populations."""
+"""Stable sorting in kernels."""
 
 import numpy as np
 
@@ -7,8 +7,9 @@ from bezierplan.kernels import allocation_free, compile_kernel
 
 @compile_kernel
 def ascending(values: np.ndarray) -> np.ndarray:
-    """Indices (n,) that sort values in ascending order, ties in their original order: numpy's
-    stable argsort, which takes far longer to compile.
+    """Return the indices (n,) that sort values in ascending order, ties in their original order.
+
+    This is numpy's stable argsort, which takes far longer to compile.
 
     >>> ascending(np.array([3.0, 1.0, 2.0, 1.0])).tolist()
     [1, 3, 2, 0]
@@ -23,7 +24,7 @@ def sort(indices: np.ndarray, values: np.ndarray) -> None:
     """Sort indices (n,), in place, by their values in ascending order, ties in their original
     order.
 
-    An insertion sort: as fast as any for a few values, and for sorted survivors before offspring.
+    An insertion sort is as fast as any for a few values, and for sorted survivors before offspring.
     """
     for k in range(1, len(indices)):
         i, place = indices[k], k

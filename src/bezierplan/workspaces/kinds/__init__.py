@@ -11,8 +11,8 @@ its description, and how it is made.
 - `world(description, problem, name, folder, length)`: the world of a problem, if the kind moves
 
 A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5
-in absolute value. `length` of a map is that of the shortest path from cell to cell between the ends
-of the problem. All faults are ValueErrors of one line.
+in absolute value. `length(map)` is the length of the shortest path from cell to cell between the
+ends of the problem. All faults are ValueErrors of one line.
 """
 
 import re
@@ -45,7 +45,7 @@ from bezierplan.workspaces.text_file import read_text
 
 
 def _is_file_name(entry: Any) -> bool:
-    """Whether it can be a file's name, which Snakemake does not read as a pattern."""
+    """Tell whether an entry can be a file's name, which Snakemake does not read as a pattern."""
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
@@ -63,7 +63,11 @@ Unit = Annotated[
 
 
 def of_length(length: int, form: str) -> AfterValidator:
-    """A check of a list of numbers: that there are so many."""
+    """Build a check of a list of numbers: it must have so many.
+
+    >>> of_length(2, "[x, y]").func([1, 2])
+    [1, 2]
+    """
 
     def check(entry: list) -> list:
         if len(entry) != length:
@@ -96,10 +100,12 @@ CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 
 class Workspace(Model):
-    """Keys common to all workspaces. draws: for a random workspace, the kind that planners see;
-    gives: for one converted from files of another format, the kind that planners see; with_side:
-    whether its problems have a `side`; moves: whether it is a world, in which runs are simulated
-    drives.
+    """Keys common to all workspaces, and facts about a kind.
+
+    draws: for a random workspace, the kind that planners see.
+    gives: for one converted from files of another format, the kind that planners see.
+    with_side: true if its problems have a `side`.
+    moves: true for a world, in which runs are simulated drives.
     """
 
     draws: ClassVar[str | None] = None
@@ -118,7 +124,7 @@ class Workspace(Model):
 
 
 class World(Workspace):
-    """Keys common to all worlds."""
+    """Keys common to all worlds, in which obstacles move or cells change."""
 
     moves: ClassVar[bool] = True
 
@@ -144,23 +150,24 @@ class RandomMoving(World):
 
 
 def _places() -> dict[str, str]:
+    """Return the modules of all kinds by name, here and in `papers`."""
     return find_kinds("workspaces/kinds", "worlds")
 
 
 def kind_of(description: dict) -> ModuleType:
-    """The file of a description's kind of workspace."""
+    """Import the module of a description's kind of workspace."""
     return load_module(_places()[description["kind"]])
 
 
 def modules_of(workspaces: dict[str, dict]) -> list[str]:
-    """Modules of the kinds of some workspaces, and of functions that draw them."""
+    """List the modules of the kinds of some workspaces, and of functions that draw them."""
     functions = [each["file"] for each in workspaces.values() if "function" in each]
     return [*(_places()[each["kind"]] for each in workspaces.values()), *functions]
 
 
 @cache
 def kinds() -> dict[str, type[Workspace]]:
-    """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
+    """Return the keys of descriptions by kind of workspace: fixed, then random, then worlds."""
     found = {name: load_module(place).Options for name, place in _places().items()}
     return dict(
         sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].draws), each[0]))
@@ -168,17 +175,21 @@ def kinds() -> dict[str, type[Workspace]]:
 
 
 def text(description: dict, key: str, folder: Path) -> str:
-    """The text of the file that a key of a description names. Raises ValueError with both names."""
+    """Read the text of the file that a key of a description names.
+
+    Raises ValueError with both names.
+    """
     with naming(f"{key}: {description[key]}"):
         return read_text(folder / description[key])
 
 
 @contextmanager
 def naming(file: str) -> Iterator[None]:
-    """Prefix the message of a ValueError with the name of a file, or with a key and the file, as
-    one line.
+    """Prefix the message of a ValueError, as one line, with a file's name, or a key and the
+    file.
     """
     try:
         yield
     except ValueError as error:
+        # A fault is one line; its cause would add more.
         raise Fault(f"{file}: {error}") from None

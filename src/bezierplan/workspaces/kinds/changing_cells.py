@@ -37,7 +37,7 @@ class Change(Model):
 
 
 class Options(World):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `changing_cells`."""
 
     gives: ClassVar[str] = "grid"
 
@@ -51,9 +51,13 @@ class Options(World):
 def world(
     description: dict, problem: dict, name: str, folder: Path, length: Callable[[Grid], float]
 ) -> ChangingCells:
-    """The maps of a description, each from its moment on."""
+    """Build the maps of a description, each from its moment on.
+
+    Raises ValueError for maps of different sizes, and for moments that do not ascend.
+    """
     from bezierplan.workspaces.worlds import ChangingCells
 
+    # Each map is a description of kind `grid`, so it is checked as one.
     shared = {key: description[key] for key in ("cell", "unit")}
     names = [description["file"], *(change["file"] for change in description["changes"])]
     maps = tuple(grid.load(shared | {"file": file}, folder) for file in names)
@@ -76,7 +80,7 @@ def world(
 
 
 def _moment(change: dict, first: Grid, length: Callable[[Grid], float], pace: float) -> float:
-    """When a change happens, in steps."""
+    """Return when a change happens, in steps."""
     if "at" in change:
         return float(change["at"])
     # A share of the way of a robot that follows the shortest path from cell to cell.

@@ -13,7 +13,7 @@ from bezierplan.workspaces.limits import bounds_of, check_gaps, check_numbers, c
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `circles`."""
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
     circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(
@@ -23,7 +23,15 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Circles:
-    """The circles that a description lists."""
+    """Build the circles that a description lists.
+
+    Raises ValueError, naming the circle, for one that is too small, lies outside the bounds, or
+    leaves a gap that is neither closed nor open.
+
+    >>> room = load({"bounds": [0, 4, 0, 3], "circles": [[2, 1.5, 0.5]], "unit": "m"}, Path())
+    >>> room.centres.tolist(), room.radii.tolist()
+    ([[2.0, 1.5]], [0.5])
+    """
     check_numbers(np.array(description["bounds"], dtype=float), "bounds")
     limits = bounds_of(description["bounds"])
     table = np.array(description["circles"], dtype=float).reshape(-1, 3)
@@ -35,8 +43,10 @@ def load(description: dict, folder: Path) -> Circles:
     walls = np.hstack([centres - limits[::2], limits[1::2] - centres]) - radii[:, None]
     for i, (centre, radius) in enumerate(zip(centres, radii)):
         check_thickness(radius, f"circles: circle {i}: radius")
+        # The border may cut a circle; one beyond it would be no obstacle.
         if outside[i]:
             raise ValueError(f"circles: circle {i}: lies outside the bounds")
+        # Each pair once, with the circles behind this one.
         gaps = np.hypot(*(centres[i + 1 :] - centre).T) - radii[i + 1 :] - radius
         check_gaps(np.append(gaps, walls[i]), f"circles: circle {i}")
     return Circles(limits, centres, radii, description["unit"])

@@ -16,7 +16,7 @@ TYPES = {"circles": Circles, "grid": Grid, "polygons": Polygons}
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `drawn`."""
 
     function: Annotated[Name, Names("world")] = Field(
         description="the name of a function of the study's `worlds.py`, called with a random "
@@ -30,16 +30,19 @@ class Options(Workspace):
 
     @property
     def draws(self) -> str:  # type: ignore[override]
-        """The kind of workspace that planners see."""
+        """Return the kind of workspace that planners see."""
         return self.sees
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygons:
-    """The workspace of a layout; its random numbers follow from the names of study and workspace,
-    and from the layout's number, so that layouts with different numbers of obstacles can be nested.
+    """Have a study's function draw the workspace of a layout.
 
-    description: with `file`, the module of the function. Raises ValueError if the function returns
-    another kind.
+    Its random numbers follow from the names of study and workspace, and from the layout's number,
+    so that layouts with different numbers of obstacles can be nested.
+
+    description: with `file`, the module of the function.
+
+    Raises ValueError if the function returns another kind.
     """
     function = getattr(load_module(description["file"]), description["function"])
     rng = generator(name, problem["layout"])

@@ -14,7 +14,7 @@ from bezierplan.workspaces.text_file import split_lines
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `grid`."""
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
@@ -24,13 +24,15 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The cells of a file of . and #, the top row first; optionally with the heights of a file of
-    numbers, likewise.
+    """Read the cells of a file of . and #, the top row first.
+
+    A file of numbers may give their heights, likewise.
     """
     check_thickness(description["cell"], "cell:")
     lines = split_lines(text(description, "file", folder))
     with naming(description["file"]):
         flat = grid.from_lines(lines, float(description["cell"]), description["unit"])
+        # A cell within the limits can still make a map beyond them.
         check_numbers(np.array(flat.bounds), f"cell: {description['cell']}: the border")
     if "heights" not in description:
         return flat

@@ -11,7 +11,7 @@ from bezierplan.workspaces.kinds import UNKNOWN, File, Size, Workspace, naming
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `image`."""
 
     gives: ClassVar[str] = "grid"
 
@@ -21,7 +21,7 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The pixels of an image, with its lower left corner at 0, 0."""
+    """Read the pixels of an image as cells, with its lower left corner at 0, 0."""
     with naming(description["file"]):
         unknown = description.get("unknown", "occupied")
         image = folder / description["file"]

@@ -19,7 +19,7 @@ MovingCircle = Annotated[list[Number], of_length(5, "[x, y, radius, x velocity, 
 
 
 class Options(World):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `moving_circles`."""
 
     gives: ClassVar[str] = "circles"
 
@@ -30,7 +30,10 @@ class Options(World):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """The circles that a description lists."""
+    """Build the circles that a description lists.
+
+    Raises ValueError for a centre outside the bounds, or a radius that is too small.
+    """
     walls = limits.bounds_of(description["bounds"])
     table = np.array(description["circles"], dtype=float).reshape(-1, 5)
     centres, radii, velocities = table[:, :2], table[:, 2], table[:, 3:]

@@ -11,14 +11,14 @@ from bezierplan.workspaces.polygons import Polygons
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `polygons`."""
 
     file: File = Field(description="a GeoJSON file in the study's folder")
     margin: NotNegative | None = Field(None, description=MARGIN)
 
 
 def load(description: dict, folder: Path) -> Polygons:
-    """The border and the obstacles of a GeoJSON file."""
+    """Read the border and the obstacles of a GeoJSON file."""
     content = text(description, "file", folder)
     with naming(description["file"]):
         return read_geojson(content, description["unit"], description.get("margin"))

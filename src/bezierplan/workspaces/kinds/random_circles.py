@@ -21,13 +21,13 @@ RADIUS = (
 
 
 def _is_radius(entry: Any) -> bool:
-    """Whether it is a radius, or two between which radii lie."""
+    """Tell whether an entry is a radius, or two between which radii lie."""
     ends = entry if isinstance(entry, list) else [entry, entry]
     return len(ends) == 2 and all(map(is_number, ends)) and SMALLEST_FEATURE <= ends[0] <= ends[1]
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `random_circles`."""
 
     draws: ClassVar[str] = "circles"
 
@@ -45,8 +45,9 @@ class Options(Workspace):
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles:
-    """The first so many circles of a layout. Raises ValueError for more than it has, for bounds
-    without room, and if no free place is found.
+    """Draw the first so many circles of a layout.
+
+    Raises ValueError for more than it has, for bounds without room, and if no free place is found.
     """
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     if problem["obstacles"] > description["circles"]:
@@ -58,13 +59,17 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
 
 
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
-    """One layout of a description with bounds, radius, circles (how many) and unit.
+    """Draw one layout of a description with bounds, radius, circles (how many) and unit.
 
     Centres are uniform within the bounds, or within the corridor; a circle that comes nearer to an
-    end, (x, y) in units, than the gap is redrawn. name: that of study and workspace; number: that
-    of the layout. Circles may overlap each other. Raises ValueError for bounds without room, and if
-    no free place is found.
+    end, (x, y) in units, than the gap is redrawn. Circles may overlap each other.
+
+    name: "study/workspace", which seeds the draw.
+    number: number of the layout.
+
+    Raises ValueError for bounds without room, and if no free place is found.
     """
+    # Neither the number of circles nor the ends are part of the seed.
     rng = generator(name, number)
     bounds = within = bounds_of(description["bounds"])
     origin, axes, places = np.zeros(2), np.eye(2), np.array(ends)
@@ -78,11 +83,12 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     centres, radii = [], []
     for _ in range(description["circles"]):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
+        # A larger circle needs a wider gap, so its radius comes first.
         centres.append(draw_centres(rng, 1, within, places, radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
 
 
 def first(circles: Circles, count: int) -> Circles:
-    """The first circles of a layout: layouts with different numbers of circles are nested."""
+    """Return the first circles of a layout: layouts of different numbers of circles are nested."""
     return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)

@@ -12,7 +12,7 @@ from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, p
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `raster`."""
 
     gives: ClassVar[str] = "grid"
 
@@ -26,7 +26,8 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The cells that the polygons of a GeoJSON file occupy."""
+    """Build the cells that the polygons of a GeoJSON file occupy."""
+    # The keys `file` and `margin` mean the same as in the kind `polygons`.
     shapes = polygons.load(description, folder)
     with naming(description["file"]):
         return raster.from_polygons(shapes, float(description["cell"]), description["rule"])

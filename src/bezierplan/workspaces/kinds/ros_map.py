@@ -11,7 +11,7 @@ from bezierplan.workspaces.kinds import UNKNOWN, File, Workspace, naming
 
 
 class Options(Workspace):
-    """Keys of a workspace."""
+    """Keys of a workspace of kind `ros_map`."""
 
     gives: ClassVar[str] = "grid"
 
@@ -20,14 +20,17 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The image that a YAML file names, which lies in the same folder."""
+    """Read the image that a YAML file names, which lies in the same folder."""
     with naming(description["file"]):
         unknown = description.get("unknown", "occupied")
         return ros.read(folder / description["file"], folder, description["unit"], unknown)
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
-    """The YAML file and its image. Raises ValueError if it names none."""
+    """List the YAML file and its image.
+
+    Raises ValueError if it names none.
+    """
     file = folder / description["file"]
     with naming(description["file"]):
         return [file, ros.find_image(file, folder)]

@@ -30,7 +30,10 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Circles on a field, which planners see as cells. Raises ValueError if no place is free."""
+    """Draw circles that move on a field, which planners see as cells.
+
+    Raises ValueError if no place is free.
+    """
     side, count = problem["side"], problem["obstacles"]
     walls = limits.bounds_of([0.0, side, 0.0, side])
     ends = [*problem["start"], *problem["target"]]
@@ -40,4 +43,5 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
         rng, description, count, walls, np.reshape(ends, (2, 2)), radius
     )
     circles = moving.circles(description, walls, centres, velocities, np.full(count, float(radius)))
+    # Centres are reflected at the outermost cells' centres; the field reaches half a cell farther.
     return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), view="cells")

@@ -44,15 +44,15 @@ class Options(Workspace):
 
 
 def draw(description: dict, problem: dict, name: str) -> Grid:
-    """The first of some maps (`candidates`) whose shortest path over the 8-connected lattice has
-    the length `lattice_length`, in cells, if one is given.
+    """Draw the first of some maps (`draw_maps`) whose shortest path over the 8-connected
+    lattice has the length `lattice_length`, in cells, if one is given.
 
     Raises ValueError if there is none.
     """
     from bezierplan.geometry import shortest_paths
 
     wanted, corners = description.get("lattice_length"), description["corners"]
-    for grid in candidates(description, problem, name):
+    for grid in draw_maps(description, problem, name):
         ends = lattice.build_grid_lattice(
             grid, tuple(problem["start"]), tuple(problem["target"]), corners
         )
@@ -72,17 +72,17 @@ def draw(description: dict, problem: dict, name: str) -> Grid:
     )
 
 
-def candidates(description: dict, problem: dict, name: str) -> Iterator[Grid]:
-    """Maps for a problem, one after another, drawn from names and numbers alone.
+def draw_maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
+    """Draw maps for a problem, one after another, from names and numbers alone.
 
     description: largest_block, the maximum side of a block in cells; clear_ends, how many cells in
     every direction from start and target stay free, including their own; and unit. problem: side,
     the width and height of a map in cells; start; target; layout, its number; and obstacles, the
-    number of occupied cells. name: that of study and workspace.
+    number of occupied cells. name: study's and workspace's.
 
     Width, height and place of a block are uniform. A block that touches another, even at a corner,
-    comes too close to an end, or would occupy too many cells is left out. Of `MOST_MAPS` draws,
-    those with the required number of occupied cells are maps.
+    comes too close to an end, or would occupy too many cells is left out. Draws with the required
+    number of occupied cells are maps; there are `MOST_MAPS` draws.
 
     Raises ValueError, naming the key, if start or target is not on the map.
     """
@@ -95,20 +95,25 @@ def candidates(description: dict, problem: dict, name: str) -> Iterator[Grid]:
             < description["clear_ends"]
         )
     numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
+    # The wanted length is no part of the seed: it chooses among the same maps.
     rng = generator(name, side, *numbers)
     for _ in range(MOST_MAPS):
-        occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
+        occupied = _draw_blocks(
+            rng, ends, problem["obstacles"], min(description["largest_block"], side)
+        )
         if occupied.sum() == problem["obstacles"]:
             yield Grid(occupied, 1.0, description["unit"])
 
 
-def _blocks(rng: np.random.Generator, ends: np.ndarray, most: int, largest: int) -> np.ndarray:
-    """Occupied cells (side, side), `most` of them, or fewer if the blocks run out. ends: bool
-    (side, side), cells to leave free.
+def _draw_blocks(rng: np.random.Generator, ends: np.ndarray, most: int, largest: int) -> np.ndarray:
+    """Draw occupied cells (side, side), `most` of them, or fewer if the blocks run out.
+
+    ends: bool (side, side), cells to leave free.
     """
     side = len(ends)
     occupied = np.zeros_like(ends)
     count = 0
+    # All numbers are drawn at once, so a block does not depend on which ones before it fit.
     sizes = rng.integers(1, largest + 1, size=(MOST_BLOCKS, 2))
     corners = rng.integers(0, side - sizes + 1)
     # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so
@@ -120,15 +125,16 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, most: int, largest: int)
     for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
         if count == most:
             break
-        block = _rectangle(height, width, stride) << ((row + 1) * stride + column + 1)
+        block = _fill_rectangle(height, width, stride) << ((row + 1) * stride + column + 1)
         if count + height * width <= most and not taken & block:
-            taken |= _rectangle(height + 2, width + 2, stride) << (row * stride + column)
+            # With a frame around the block, so that none touches it, not even at a corner.
+            taken |= _fill_rectangle(height + 2, width + 2, stride) << (row * stride + column)
             occupied[row : row + height, column : column + width] = True
             count += height * width
     return occupied
 
 
 @cache
-def _rectangle(height: int, width: int, stride: int) -> int:
-    """The cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
+def _fill_rectangle(height: int, width: int, stride: int) -> int:
+    """Return the cells of a rectangle from its lower left cell on; `stride` cells make a row."""
     return sum(((1 << width) - 1) << (row * stride) for row in range(height))

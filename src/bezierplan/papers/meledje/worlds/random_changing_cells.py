@@ -35,8 +35,12 @@ class Options(World):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> ChangingCells:
-    """At every `every`-th step as many random cells change as the problem has `obstacles`; start
-    and target stay free, and connected.
+    """Draw maps of which, at every `every`-th step, as many random cells change as the problem has
+    `obstacles`.
+
+    Start and target stay free, and connected.
+
+    Raises ValueError for more obstacles than cells that can change, and if no such change is found.
     """
     from bezierplan.workspaces.worlds import ChangingCells
 
@@ -46,8 +50,10 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
         description["every"], description["steps"], description["every"], dtype=float
     )
     ends = *problem["start"], *problem["target"]
+    # The seed leaves out `every` and the steps: a longer world begins like a shorter one.
     rng = generator(name, *ends, problem["obstacles"], problem["layout"])
     changeable = np.ones(first.occupied.shape, dtype=bool)
+    # A change never blocks an end.
     changeable[start] = changeable[target] = False
     numbers = np.flatnonzero(changeable)
     if problem["obstacles"] > len(numbers):

@@ -21,14 +21,14 @@ PROJECTION = "3d"
 
 
 class Options(landscape.Options):
-    """Those of a landscape."""
+    """Keys of the panel, as a landscape has them."""
 
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the nodes of `data` at a logarithmic height."""
     unit = options.home(frame, scene).unit
-    x, y, values = landscape.nodes(frame)
-    colours = landscape.scale_of(values).to_rgba(values)
+    x, y, values = landscape.list_nodes(frame)
+    colours = landscape.build_scale(values).to_rgba(values)
     # Facets between every second node look the same when printed, and are drawn in a third of the
     # time.
     look = {"rstride": 2, "cstride": 2, "linewidth": 0, "antialiased": False, "rasterized": True}
@@ -38,9 +38,9 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     axes.set_xlabel(f"x ({unit})", labelpad=-6)
     axes.set_ylabel(f"y ({unit})", labelpad=-6)
     axes.set_zlabel(axis_label("objective", scene), labelpad=-6)
-    numbers = landscape.round_numbers(values)
+    numbers = landscape.choose_round_numbers(values)
     axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
     axes.tick_params(pad=-3)
     for axis in "xy":
         axes.locator_params(axis, nbins=5)
-    return landscape.minima_note(frame, scene.unit)
+    return landscape.describe_minima(frame, scene.unit)

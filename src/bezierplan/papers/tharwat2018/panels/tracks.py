@@ -38,6 +38,8 @@ _FIRST = style.mark(
 
 
 class Options(RunsPanel):
+    """Keys of the panel."""
+
     rerun: ClassVar[bool] = True
     tracks: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
@@ -55,16 +57,19 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, method, candidates (feasible runs),
-    groups (values of the metric among them), part, run (its id), length (of the run's path, in
-    units), iteration, x, y (in the workspace's unit).
+    """Repeat the runs that are shown, and make the table that is drawn, one row per place.
 
-    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...
+    Columns: problem, method, candidates (feasible runs), groups (values of the metric among them),
+        part, run (its id), length (of the run's path, in units), iteration, x, y (in the
+        workspace's unit). Parts: start, target; way, a control point of the best path after
+        iteration 0, 1, ...
 
-    The runs are reproduced, because no table keeps their intermediate states. results: runs with
-    their jobs, of one problem and one method whose planner has `track`. Raises ValueError for runs
-    of several problems or methods, for a point that the curve does not have, and if a reproduced
-    run ends in a different path.
+    The runs are reproduced, because no table keeps their intermediate states.
+
+    results: runs with their jobs, of one problem and one method whose planner has `track`.
+
+    Raises ValueError for runs of several problems or methods, for a point that the curve does not
+    have, and if a reproduced run ends in a different path.
     """
     import pandas as pd
 
@@ -76,7 +81,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     feasible = results.runs[results.runs["feasible"]]
     groups = metrics.values(feasible, options.by, results.problems)
     parts = [workspaces.ends(problem)]
-    for group in _commonest(groups)[: options.runs]:
+    for group in _rank_commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
         paths = execution.track_again(results.jobs[method], run, problem)
         if options.point >= len(paths[0]):
@@ -95,12 +100,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     return drawn.assign(**names)[[*names, *columns]]
 
 
-def _commonest(groups: pd.Series) -> list[float]:
-    """The distinct values, the commonest first, ties by size."""
+def _rank_commonest(groups: pd.Series) -> list[float]:
+    """Return the distinct values, the commonest first, ties by size."""
     return groups.value_counts().sort_index().sort_values(ascending=False, kind="stable").index
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the tracks with both ends of each, and return their lengths as a note."""
     home = options.home(frame, scene)
     workspaces.draw_home(axes, home)
     style.draw_parts(axes, frame, workspaces.ENDS)

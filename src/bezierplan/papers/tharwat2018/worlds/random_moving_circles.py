@@ -27,13 +27,16 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free
-    place is found.
+    """Draw the first so many circles of a layout, as where nothing moves.
+
+    Raises ValueError if no free place is found.
     """
     walls = limits.bounds_of(description["bounds"])
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, *ends, problem["layout"])
     radius, count = description["radius"], problem["obstacles"]
+    # All circles of the layout are drawn and the first kept: worlds with more circles contain those
+    # with fewer.
     centres, velocities = moving.movement(
         rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius
     )
