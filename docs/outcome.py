@@ -68,7 +68,7 @@ def main() -> None:
     tables = {
         key: {
             name: (study.tables[name].title, len(study.tables[name].index))
-            for name, table in study.compared().items()
+            for name, table in study.find_tables_of_runs().items()
             if table.published and table.printed
         }
         for key, study in studies.items()

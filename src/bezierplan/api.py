@@ -717,7 +717,7 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
     ):
         known = [*_list_planners(), *list_planners()]
         raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
-    return _read_study(key).planner(name), _read_study(key).resolved(name)
+    return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
 
 def _find_folder(key: str) -> File:

@@ -55,9 +55,9 @@ class LogHandler(RichHandler):
         fault = getattr(record, "exception", None) if event == LogEvent.ERROR else None
         reason = LOCKED.format(Path.cwd()) if fault == "LockException" else ""
         if fault == "MissingRuleException":
-            reason = unknown_target(message)
+            reason = describe_unknown_target(message)
         elif event == LogEvent.JOB_ERROR:
-            reason = self.reason_of(job)
+            reason = self.find_reason(job)
             # If it is tried again, it is not another job.
             if info := self.event_handler.jobs_info.get(job):
                 self.event_handler.rule_counts[info["rule"]]["started"] -= 1
@@ -69,7 +69,7 @@ class LogHandler(RichHandler):
             return
         done = self.event_handler.completed == self.event_handler.total_jobs
         if "Complete log" in message and done:
-            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
+            self.say(*list_last_lines(self.outputs, time.monotonic() - self.started))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -85,7 +85,7 @@ class LogHandler(RichHandler):
         for line in lines:
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
-    def reason_of(self, job: int) -> str:
+    def find_reason(self, job: int) -> str:
         """Why a job failed, as the last lines of its log say; if they do not, where the log is."""
         logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
         for log in map(Path, logs):
@@ -109,11 +109,13 @@ class LogHandler(RichHandler):
             self.last_line, taken = now, now - self.started
             share = 100 * done // total
             # The first jobs say little of the others.
-            left = f", about {in_hours(taken * (total / done - 1))} left" * (5 <= share < 100)
-            self.say(f"{share} %: {done} of {total} jobs, {in_hours(taken)} elapsed{left}")
+            left = f", about {format_duration(taken * (total / done - 1))} left" * (
+                5 <= share < 100
+            )
+            self.say(f"{share} %: {done} of {total} jobs, {format_duration(taken)} elapsed{left}")
 
 
-def last_lines(outputs: set[Path], seconds: float) -> list[str]:
+def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
     """What was made, where the results are, how long it took, and last the page."""
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
@@ -123,13 +125,13 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
         if (count := sum(file.name.endswith(ending) for file in outputs))
     ]
     lines = [f"Made: {', '.join(made)}"] if made else []
-    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {format_duration(seconds)}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []
 
 
-def unknown_target(message: str) -> str:
+def describe_unknown_target(message: str) -> str:
     """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
     from bezierplan.schema.checked import suggest_closest
 
@@ -137,6 +139,6 @@ def unknown_target(message: str) -> str:
     return f"{match[1]}: no target{suggest_closest(match[1], KNOWN)}" if match and KNOWN else ""
 
 
-def in_hours(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """A time as h:mm:ss."""
     return str(timedelta(seconds=round(seconds)))

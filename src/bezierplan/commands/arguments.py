@@ -98,7 +98,7 @@ def _add(parser: ArgumentParser, parameter: inspect.Parameter, word: bool, text:
     return option
 
 
-def _place(text: str) -> Place:
+def _read_place(text: str) -> Place:
     """x and y from words such as `2.5,10`."""
     try:
         x, y = map(float, text.split(","))
@@ -115,7 +115,7 @@ def _read_settings(text: str) -> Settings:
 
 
 READS: dict[Any, tuple[Callable[[str], Any], str]] = {
-    Place: (_place, "X,Y"),
+    Place: (_read_place, "X,Y"),
     Settings: (_read_settings, "'{NAME: VALUE, ...}'"),
     bool: (bool, ""),
     int: (int, "N"),

@@ -41,7 +41,7 @@ class Unfit(ValueError):
 
 
 @contextmanager
-def of(name: str) -> Iterator[None]:
+def wrap_errors(name: str) -> Iterator[None]:
     """A block that executes code of a planner, or reads its answer. Raises PlannerFailure,
     beginning with a name, for any exception.
     """
@@ -70,7 +70,7 @@ def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
         claimed_feasible=_check_claim(answer.claimed_feasible),
         evaluations=_check_evaluations(answer.evaluations),
         history=_check_history(answer.history),
-        stop=_stop(answer.stop),
+        stop=_check_stop(answer.stop),
         extra=_check_extra(answer.extra, names),
     )
     if plan.path is None and plan.claimed_feasible:
@@ -199,7 +199,7 @@ def _check_history(values: Any) -> np.ndarray:
     return np.array(values, dtype=float)
 
 
-def _stop(value: Any) -> str:
+def _check_stop(value: Any) -> str:
     if not isinstance(value, str) or not value.isprintable():
         raise Unfit("stop: expected a word")
     return value

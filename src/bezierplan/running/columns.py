@@ -77,7 +77,7 @@ flag true or false; others are lists.
 """
 
 
-def declared(*tables: type) -> dict[str, tuple[type, Column]]:
+def read_columns(*tables: type) -> dict[str, tuple[type, Column]]:
     """Columns with the types of their values and what they mean."""
     return {
         name: typing.get_args(annotation)
@@ -87,7 +87,7 @@ def declared(*tables: type) -> dict[str, tuple[type, Column]]:
 
 
 def _read_types(*tables: type) -> dict[str, str]:
-    return {name: TYPES.get(kind, "list") for name, (kind, _) in declared(*tables).items()}
+    return {name: TYPES.get(kind, "list") for name, (kind, _) in read_columns(*tables).items()}
 
 
 PLANNED = _read_types(Planned)

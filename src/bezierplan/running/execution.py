@@ -180,7 +180,7 @@ def build_row(
     column would overwrite another.
     """
     run = build_task(chunk, condition, repeat)
-    with answer.of(run.name):
+    with answer.wrap_errors(run.name):
         plan = answer.accept_answer(plan, problem, [*TAKEN, *run.settings, *condition.values])
         answer.check_history(plan, interface.read_traits(chunk.planner).keeps_best)
     curve, points = answer.store_path(plan.path)
@@ -214,14 +214,14 @@ def make_rows_again(
     """The rows of some runs, which are made again."""
     tasks = [build_task(chunk, *run) for run in runs]
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
-    judged = _judge(chunk, met, worlds)
+    judge_reply = _build_judge(chunk, met, worlds)
     return [
-        judged(*run, each)[0]
+        judge_reply(*run, each)[0]
         for run, each in zip(runs, run_tasks(chunk, met, tasks, worlds=worlds))
     ]
 
 
-def _judge(
+def _build_judge(
     chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
 ) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
     """A function that makes, of what a run has found, a row, and of a drive its trace."""
@@ -229,7 +229,7 @@ def _judge(
         {} if worlds else {name: build_region(each.workspace) for name, each in problems.items()}
     )
 
-    def judged(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
+    def judge_reply(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
         name, result, drew = condition.problem, reply.result, reply.drew
         if not worlds:
             return build_row(
@@ -239,7 +239,7 @@ def _judge(
         outcome, trace = rides.judge_drive(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
-    return judged
+    return judge_reply
 
 
 def run_chunk(
@@ -255,7 +255,7 @@ def run_chunk(
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
-    every, judged = chunk.conditions(), _judge(chunk, met, moving)
+    every, judge_reply = chunk.conditions(), _build_judge(chunk, met, moving)
     deterministic = interface.read_traits(chunk.planner).deterministic
     order = _order(chunk, len(every), range(*chunk.repeats))
     tasks = [build_task(chunk, every[k], repeat) for k, repeat in order]
@@ -268,9 +268,9 @@ def run_chunk(
     for reply in run_tasks(chunk, met, tasks, again, moving):
         (k, repeat), first = order[reply.number], first or reply.result
         try:
-            outcome, trace = judged(every[k], repeat, reply)
+            outcome, trace = judge_reply(every[k], repeat, reply)
             if not moving:
-                with answer.of(tasks[reply.number].name):
+                with answer.wrap_errors(tasks[reply.number].name):
                     answer.check_columns(reply.result, first, is_file(chunk.planner))
             if reply.number < 0:
                 warm[reply.number + len(order)].append(outcome)

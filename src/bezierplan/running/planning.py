@@ -109,7 +109,7 @@ def yield_plans(
         replies = (worker.Reply(0, *worker.time_call(call), True) for call in calls)
     for run in runs:
         made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
-        with answer.of(run.label):
+        with answer.wrap_errors(run.label):
             legs = [
                 answer.accept_answer(each.result, leg, taken) for each, leg in zip(made, run.legs)
             ]

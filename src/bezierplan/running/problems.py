@@ -48,11 +48,11 @@ def build(name: str, description: dict, workspace: Workspace) -> Problem:
 
     Raises ValueError, naming key and value, unless they lie in free space.
     """
-    start, target = (_end(end, description, workspace) for end in ("start", "target"))
+    start, target = (_read_end(end, description, workspace) for end in ("start", "target"))
     return Problem(name, workspace, start, target)
 
 
-def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+def _read_end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:

@@ -230,7 +230,7 @@ def _find_row_faults(
     points = row["path_points"]
     try:
         if moving:
-            again = _drive_judged(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
+            again = _judge_way(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
         else:
             key = problem.name, row["path_curve"], tuple(points)
             if key not in cache:
@@ -273,7 +273,7 @@ def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, 
     }
 
 
-def _drive_judged(
+def _judge_way(
     row: dict[str, Any], points: np.ndarray, problem: Problem, world: World
 ) -> dict[str, tuple[Any, float]]:
     """What the way of a drive says, likewise."""

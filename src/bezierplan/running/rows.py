@@ -32,7 +32,7 @@ def build_table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
     for a row that lacks a declared column, and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a
     value that does not have its type.
     """
-    types = {name: _TYPES[kind] for name, (kind, _) in columns.declared(*declared).items()}
+    types = {name: _TYPES[kind] for name, (kind, _) in columns.read_columns(*declared).items()}
     names = dict.fromkeys(name for row in rows for name in row)
     return pa.table(
         {
@@ -46,7 +46,7 @@ def build_table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
 
 def find_fault(schema: pa.Schema, *declared: type) -> str:
     """The first declared column that a file lacks or has in another type, in words, or empty."""
-    for name, (kind, _) in columns.declared(*declared).items():
+    for name, (kind, _) in columns.read_columns(*declared).items():
         if name not in schema.names:
             return f"no column {name}"
         found = schema.field(name).type

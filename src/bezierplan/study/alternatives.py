@@ -28,7 +28,7 @@ def find_default(study: Study, assumption: AssumptionEntry) -> Any:
     """Return the value that runs use where an assumption leaves it to a setting: one for the
     methods without a value of their own, or each of those that it names.
     """
-    setting, methods = assumption.setting, study.concerned(assumption)
+    setting, methods = assumption.setting, study.list_governed_methods(assumption)
     if setting is None:
         return assumption.default
     used = {}
@@ -36,7 +36,7 @@ def find_default(study: Study, assumption: AssumptionEntry) -> Any:
         settings = [study.problems[problem].settings for problem in assumption.problems]
         values = [each[setting] for each in settings if setting in each]
         open_there = values and setting not in study.methods[name].settings
-        used[name] = values[0] if open_there else study.resolved(name)[setting]
+        used[name] = values[0] if open_there else study.resolve_settings(name)[setting]
     shared = [used[name] for name in methods if setting not in study.methods[name].settings]
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
@@ -117,7 +117,8 @@ def build_single_alternatives(study: Study) -> dict[str, Study]:
     return {DEFAULT: few} | {
         name_folder(each.id, value): apply_values(few, {each.id: value})
         for each in study.assumptions
-        if methods.intersection(study.concerned(each)) or homes.intersection(each.workspace)
+        if methods.intersection(study.list_governed_methods(each))
+        or homes.intersection(each.workspace)
         if not each.excluded_by
         for value in each.alternatives
     }

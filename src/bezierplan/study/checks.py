@@ -62,8 +62,8 @@ class Checks:
         self.words = {"generation"}
         self._place = ()
         self.design = cache(lambda experiment: build_design(self.study, experiment))
-        self.runs = cache(self._runs)
-        self.built = cache(self._built)
+        self.runs = cache(self._join_runs)
+        self.build_problem = cache(self._build_problem)
         self.known = {
             "experiment": [*study.experiments],
             "workspace": study.workspaces,
@@ -77,9 +77,9 @@ class Checks:
             "world": study_code.part_of(study.code_for("worlds")),
             "drawing": study_code.part_of(study.code_for("panels")),
             "statistic": statistics.STATISTICS,
-            "compared": study.with_published(),
+            "compared": study.find_published_tables(),
             "artefact": {**study.tables, **study.figures},
-            "printed table": [Path(file).stem for file in study.published_files()],
+            "printed table": [Path(file).stem for file in study.list_published_files()],
             "claim": [claim.id for claim in study.claims],
         }
 
@@ -102,7 +102,9 @@ class Checks:
         finally:
             self._place = outer
 
-    def each(self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]) -> None:
+    def check_entries(
+        self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]
+    ) -> None:
         """Check the entries of a section of a file, and leave out those that have a fault."""
         for name, entry in [*entries.items()]:
             with self.at(section, name):
@@ -114,19 +116,21 @@ class Checks:
         """All faults, one line each."""
         study = self.study
         with self.at(shorten_path(study.folder / "experiments.yaml")):
-            self.each("methods", study.methods, self.method)
+            self.check_entries("methods", study.methods, self.check_method)
             # A planner that has a fault may have any settings.
             self.complete = not self.invalid
             with self.at():
-                self.shared_settings()
+                self.check_shared_settings()
             if self.complete:
-                self.each("methods", {**study.methods}, lambda name, _: self.settings(study, name))
-            self.each("workspaces", study.workspaces, self.workspace)
-            self.each("problems", study.problems, self.problem)
-            self.each("experiments", study.experiments, self.experiment)
+                self.check_entries(
+                    "methods", {**study.methods}, lambda name, _: self.check_settings(study, name)
+                )
+            self.check_entries("workspaces", study.workspaces, self.check_workspace)
+            self.check_entries("problems", study.problems, self.check_problem)
+            self.check_entries("experiments", study.experiments, self.check_experiment)
             if compared := study.baseline_comparison:
                 with self.at("baseline_comparison"):
-                    self.names(compared)
+                    self.check_names(compared)
                     for name in compared.experiments:
                         check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
                     for name, family in compared.families.items():
@@ -136,22 +140,32 @@ class Checks:
                             check_all(family.problems, listed, "problems")
         with self.at():
             named = " ".join(read_text(file, "") for file in study.folder.glob("*.yaml"))
-            for file in map(Path, study.published_files()):
+            for file in map(Path, study.list_published_files()):
                 header = {*next(iter(published.read(file).values()))}
                 if header.issuperset(published.COLUMNS) and file.stem not in named:
                     raise Fault(f"{file}: no table names it; expected published: {file.name}")
             if file := study.verdict_file():
                 verdict.read(file)
         with self.at(shorten_path(study.folder / "artefacts.yaml")):
-            self.each("tables", study.tables, self.table)
-            self.each("figures", study.figures, self.figure)
-            self.prints()
+            self.check_entries("tables", study.tables, self.check_table)
+            self.check_entries("figures", study.figures, self.check_figure)
+            self.check_labels()
         with self.at(shorten_path(study.folder / "layout.yaml")):
             check_all(study.layout, {**study.tables, **study.figures}, "layout")
         for file, section, entries, work in (
-            ("claims", "claims", [(e.id, e) for e in study.claims], self.claim),
-            ("assumptions", "assumptions", [(e.id, e) for e in study.assumptions], self.assumption),
-            ("assumptions", "readings", [(e.folder, e) for e in study.readings], self.reading),
+            ("claims", "claims", [(e.id, e) for e in study.claims], self.check_claim),
+            (
+                "assumptions",
+                "assumptions",
+                [(e.id, e) for e in study.assumptions],
+                self.check_assumption,
+            ),
+            (
+                "assumptions",
+                "readings",
+                [(e.folder, e) for e in study.readings],
+                self.check_reading,
+            ),
         ):
             with self.at(shorten_path(study.folder / f"{file}.yaml")):
                 # Results are looked up by it.
@@ -159,18 +173,18 @@ class Checks:
                 for name in names:
                     if names.count(name) > 1:
                         raise Fault(f"{section}: {name}: another one has this id already")
-                self.each(section, dict(entries), work)
+                self.check_entries(section, dict(entries), work)
         with self.at(shorten_path(study.folder / "assumptions.yaml"), "fitted"):
-            check_all(study.fitted.keys() - self.invalid, study.with_published(), "table")
+            check_all(study.fitted.keys() - self.invalid, study.find_published_tables(), "table")
             for table, fitted in study.fitted.items():
                 check_all(fitted, [each.metric for each in study.tables[table].values], table)
         return self.faults
 
     # experiments.yaml
 
-    def method(self, name: str, method: Method) -> None:
+    def check_method(self, name: str, method: Method) -> None:
         """Its planner has the interface of one, and nothing of its own is named like a column."""
-        self.names(method)
+        self.check_names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
             check_inside(self.study.folder, method.planner, location)
@@ -189,42 +203,44 @@ class Checks:
             raise Fault(f"policy: {method.policy}: warm, but its planner has no function resume")
         metrics.add_columns(extra)
 
-    def shared_settings(self) -> None:
+    def check_shared_settings(self) -> None:
         """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
-        used = {setting for name in study.methods for setting in study.accepted(name)}
+        used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
         self.known["setting"] = used
         if not self.complete:
             return
         check_all(study.of_planners, planners, "settings")
         check_all(study.settings.keys() - study.of_planners.keys(), used, "settings")
         for planner, settings in study.of_planners.items():
-            check_all(settings, study.accepted(planners[planner]), f"settings: {planner}")
+            check_all(
+                settings, study.read_accepted_settings(planners[planner]), f"settings: {planner}"
+            )
         for preset, values in study.presets.items():
             if preset in used or preset in RESERVED:
                 raise Fault(f"presets: {preset}: a setting or a column has this name")
             for value, settings in values.items():
                 check_all(settings, used, f"presets: {preset}: {value}")
 
-    def settings(self, study: Study, name: str) -> None:
+    def check_settings(self, study: Study, name: str) -> None:
         """Each setting of a method has a value that its planner accepts, also on a problem where
         the study has another one.
         """
         own = [each.problems for each in study.assumptions if each.id in study.values]
         for problem in {"", *itertools.chain.from_iterable(own)}:
-            settings = study.resolved(name) | study.changed(name, problem)
+            settings = study.resolve_settings(name) | study.find_changed_settings(name, problem)
             interface.check_settings(load_planner(study.planner(name)), settings, "settings")
 
-    def workspace(self, name: str, workspace: Workspace) -> None:
+    def check_workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
-        self.names(workspace)
+        self.check_names(workspace)
         if not workspace.draws and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
-    def problem(self, name: str, problem: ProblemEntry) -> None:
+    def check_problem(self, name: str, problem: ProblemEntry) -> None:
         """It has the keys of its kind of workspace, and lies in free space."""
-        self.names(problem)
+        self.check_names(problem)
         if self.complete:
             check_all(problem.settings, self.known["setting"], "settings")
         home = self.study.workspace_of(name)
@@ -236,9 +252,9 @@ class Checks:
                 )
         if home.draws and problem.start is None:
             raise Fault(f"start_cell: {problem.start_cell}: expected start: [x, y] in a drawn map")
-        self.built(name)
+        self.build_problem(name)
 
-    def _built(self, name: str) -> Problem:
+    def _build_problem(self, name: str) -> Problem:
         """A problem as planners see it, in the first layout if there are several. Raises
         ValueError.
         """
@@ -247,9 +263,9 @@ class Checks:
         described = build_descriptions(study, {name: problem.plain("layouts") | drawn})
         return problems.build_all(described, study.folder)[0][name]
 
-    def experiment(self, name: str, experiment: Experiment) -> None:
+    def check_experiment(self, name: str, experiment: Experiment) -> None:
         """Its problems and methods suit each other, and what it varies exists."""
-        self.names(experiment)
+        self.check_names(experiment)
         study, moves = self.study, self.study.moves(name)
         for problem in experiment.problems:
             if study.workspace_of(problem).moves != moves:
@@ -263,7 +279,11 @@ class Checks:
                     f"methods: {method}: {'needs' if moves else 'has'} a policy, which experiments "
                     "in worlds that move need, and no others"
                 )
-        accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
+        accepted = {
+            setting
+            for method in experiment.methods
+            for setting in study.read_accepted_settings(method)
+        }
         check_all(experiment.vary, accepted | set(study.presets), "vary")
         for setting in experiment.vary.keys() & study.presets.keys():
             values = (str(value).lower() for value in experiment.vary[setting])
@@ -274,9 +294,9 @@ class Checks:
         for factor, fewer in experiment.fewer.items():
             check_all(fewer, map(str, factors[factor]), f"fewer: {factor}")
         for method in experiment.methods:
-            self.method_in(name, experiment, method)
+            self.check_method_in(name, experiment, method)
 
-    def method_in(self, name: str, experiment: Experiment, method: str) -> None:
+    def check_method_in(self, name: str, experiment: Experiment, method: str) -> None:
         """A method's planner supports the problems of an experiment, and its settings are valid
         under every condition.
         """
@@ -291,7 +311,9 @@ class Checks:
                     f"({problem})"
                 )
             if hasattr(module, "serves"):
-                interface.ask(module.serves, f"{where}: problem {problem}", self.built(problem))
+                interface.ask(
+                    module.serves, f"{where}: problem {problem}", self.build_problem(problem)
+                )
         if not self.complete or method in self.invalid:
             return
         described = build_chunk(study, name, method, "full", 0)
@@ -308,7 +330,7 @@ class Checks:
 
     # Names defined elsewhere
 
-    def names(self, model: Model) -> None:
+    def check_names(self, model: Model) -> None:
         """Names in a model refer to something that exists. The columns of a panel without runs
         belong to its function.
         """
@@ -324,17 +346,17 @@ class Checks:
                 folder = "published/" if what == "published" else ""
                 check_inside(self.study.folder, f"{folder}{name}", f"{key}: {name}")
             elif experiments:
-                self.of_runs(tuple(experiments), claim, what, name, key)
+                self.check_name_in_runs(tuple(experiments), claim, what, name, key)
             if what in ("function", "world") and len(path) == 1:
-                self.arguments(self.known[what][name], getattr(model, "arguments", {}))
+                self.check_arguments(self.known[what][name], getattr(model, "arguments", {}))
 
-    def _runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
+    def _join_runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
         """The runs of experiments; those of claims without baselines."""
         return join_designs(
             [self.design(each) for each in experiments], self.study.baselines if claim else ()
         )
 
-    def of_runs(
+    def check_name_in_runs(
         self, experiments: tuple[str, ...], claim: bool, what: str, name: Any, key: str
     ) -> None:
         """A metric, a column, a selection, a repeat or a problem exists in the runs of
@@ -356,7 +378,7 @@ class Checks:
             case "problem of runs":
                 check_known(name, runs.values("problem"), key)
 
-    def arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
+    def check_arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
         """A function's keyword-only arguments are given, each as its annotation says."""
         accepted = {}
         for name, parameter in inspect.signature(function).parameters.items():
@@ -370,15 +392,15 @@ class Checks:
 
     # artefacts.yaml
 
-    def table(self, name: str, table: TableEntry) -> None:
+    def check_table(self, name: str, table: TableEntry) -> None:
         """Its names exist, and its file of published numbers fits it."""
-        self.names(table)
+        self.check_names(table)
         if isinstance(table, Pivot) and table.published:
             runs = self.design(table.experiment)
             published.check(self.study, runs, table)
             runs.check_where(table.primary, "primary")
 
-    def prints(self) -> None:
+    def check_labels(self) -> None:
         """Looks are of methods; labels tell these apart, and are of what experiments.yaml names, of
         columns, metrics and statistics, or of words of a function's table.
         """
@@ -396,16 +418,16 @@ class Checks:
                 near = difflib.get_close_matches(name, own)
                 check_known(name, near or words, "labels")
 
-    def figure(self, name: str, figure: Figure) -> None:
+    def check_figure(self, name: str, figure: Figure) -> None:
         """Its panels' names exist."""
         if name in self.study.tables:
             raise Fault("a table has this name already")
         for panel in figure.panels:
             with self.at("panels", panel.place):
-                self.names(panel)
-                self.panel(panel)
+                self.check_names(panel)
+                self.check_panel(panel)
 
-    def panel(self, panel: Panel) -> None:
+    def check_panel(self, panel: Panel) -> None:
         """A panel's runs are of the kind that it shows, of one method if it shows one run, and of
         enough methods.
         """
@@ -425,19 +447,19 @@ class Checks:
 
     # claims.yaml and assumptions.yaml
 
-    def claim(self, identity: str, claim: Claim) -> None:
+    def check_claim(self, identity: str, claim: Claim) -> None:
         """The names of its checks exist, and its variants select runs."""
-        self.names(claim)
+        self.check_names(claim)
         first, *_ = variants(claim)
         judged = in_variant(claim.checks, first, first)
         for number, check in enumerate(claim.checks):
             with self.at("checks", str(number)):
-                self.names(check)
+                self.check_names(check)
                 if check.cells and check.experiments:
                     values = self.runs(tuple(check.experiments), True).values(check.cells)
                     check_all(set(check.groups_named) - {"rest"}, values, "group")
                 if isinstance(check, OfRuns):
-                    self.unmixed(judged[number])
+                    self.check_unmixed(judged[number])
         experiments = {name: None for check in claim.checks for name in check.experiments}
         for column, entries in claim.variants.items():
             for value in (each for entry in entries for each in convert_to_list(entry)):
@@ -449,7 +471,7 @@ class Checks:
                         {column: value}, "variants", claim=True
                     )
 
-    def unmixed(self, check: OfRuns) -> None:
+    def check_unmixed(self, check: OfRuns) -> None:
         """A unit of a comparison has runs of one experiment, condition and method. Ranks are taken
         among the runs of an artefact alone.
         """
@@ -468,11 +490,11 @@ class Checks:
                 "with one of them"
             )
 
-    def assumption(self, identity: str, assumption: AssumptionEntry) -> None:
+    def check_assumption(self, identity: str, assumption: AssumptionEntry) -> None:
         """Its names are those of the study, and every alternative is a valid value of what it
         governs.
         """
-        self.names(assumption)
+        self.check_names(assumption)
         study = self.study
         for name, key in assumption.workspace.items():
             check_known(name, study.workspaces, "workspace")
@@ -482,23 +504,25 @@ class Checks:
                 raise Fault(f"default: {assumption.default}: expected {used}, which {name} has")
             for value in assumption.alternatives:
                 with self.at("alternatives", str(value), name):
-                    self.names(type(workspace).model_validate(workspace.plain() | {key: value}))
+                    self.check_names(
+                        type(workspace).model_validate(workspace.plain() | {key: value})
+                    )
         if not assumption.setting:
             return
-        methods = study.concerned(assumption)
+        methods = study.list_governed_methods(assumption)
         if not methods and self.complete:
             used = self.known["setting"] - {assumption.setting}
             check_known(assumption.setting, used, "setting")
         for method, settings in assumption.along.items():
             check_known(method, methods, "with")
-            check_all(settings, study.accepted(method), f"with: {method}")
+            check_all(settings, study.read_accepted_settings(method), f"with: {method}")
         for value in assumption.alternatives:
             changed = apply_values(study, {identity: value})
             for method in methods:
                 with self.at("alternatives", str(value), method):
-                    self.settings(changed, method)
+                    self.check_settings(changed, method)
 
-    def reading(self, name: str, reading: ReadingEntry) -> None:
+    def check_reading(self, name: str, reading: ReadingEntry) -> None:
         """Its values are alternatives that a run can have, all at once, and its claims rest on
         runs.
         """
@@ -517,7 +541,7 @@ class Checks:
                 raise Fault(
                     f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
                 )
-            for method in study.concerned(assumption):
+            for method in study.list_governed_methods(assumption):
                 place = (method, assumption.setting, *assumption.problems)
                 if other := settled.get(place):
                     raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
@@ -536,7 +560,7 @@ class Checks:
             changed = apply_values(study, reading.values)
             for method, *_ in settled:
                 with self.at("values", method):
-                    self.settings(changed, method)
+                    self.check_settings(changed, method)
 
 
 def check_inside(folder: Path, name: str, location: str) -> None:

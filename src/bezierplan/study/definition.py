@@ -32,7 +32,7 @@ class Study(Experiments, ArtefactsFile):
     """Id of an assumption -> the value that it has instead of the default (`alternatives.under`).
     """
 
-    def concerned(self, assumption: AssumptionEntry) -> list[str]:
+    def list_governed_methods(self, assumption: AssumptionEntry) -> list[str]:
         """Return the methods whose setting an assumption governs, except baselines and variants;
         only those that it names, if any.
         """
@@ -41,14 +41,16 @@ class Study(Experiments, ArtefactsFile):
             for name, method in self.methods.items()
             if name not in self.baselines and not method.variant_of
         ]
-        return [method for method in of if assumption.setting in self.accepted(method)]
+        return [
+            method for method in of if assumption.setting in self.read_accepted_settings(method)
+        ]
 
-    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
+    def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
         """Return the settings of a method that `values` change: everywhere, or on a problem."""
         chosen = [
             each
             for each in self.assumptions
-            if each.id in self.values and method in self.concerned(each)
+            if each.id in self.values and method in self.list_governed_methods(each)
         ]
         governed, settings = {each.setting for each in chosen}, {}
         for each in chosen:
@@ -63,7 +65,7 @@ class Study(Experiments, ArtefactsFile):
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
         return sorted({shorten_path(file) for each in named for file in each})
 
-    def named(self, folder: str) -> list[str]:
+    def list_names(self, folder: str) -> list[str]:
         """Names of the tables and figures of a tree: `paper`, those that the paper numbers; a study
         without such has all of its own there. `beyond`: the others.
         """
@@ -78,17 +80,17 @@ class Study(Experiments, ArtefactsFile):
     def files_of(self, name: str) -> list[str]:
         """The files of a table or figure, in the folder of the study's results."""
         endings = ["svg", "png", "pdf", "csv", "txt"] if name in self.figures else ["csv", "tex"]
-        if name in self.compared():
+        if name in self.find_tables_of_runs():
             endings.append("comparison.csv")
-        if name in self.with_published():
+        if name in self.find_published_tables():
             endings += ["published.csv", "wholes.csv"]
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
-    def compared(self) -> dict[str, Pivot]:
+    def find_tables_of_runs(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
-    def whole(self, table: str) -> TableEntry:
+    def complete_table(self, table: str) -> TableEntry:
         """A table with what the one that it extends says of published numbers."""
         spec = self.tables[table]
         if not getattr(spec, "extends", None):
@@ -97,12 +99,12 @@ class Study(Experiments, ArtefactsFile):
         shared = ("published", "reads", "within", "primary", "identify")
         return spec.but(**{name: getattr(printed, name) for name in shared})
 
-    def published_file(self, table: str) -> str | None:
+    def find_published_file(self, table: str) -> str | None:
         """The file of a table's published numbers relative to the working folder, or None."""
-        file = getattr(self.whole(table), "published", None)
+        file = getattr(self.complete_table(table), "published", None)
         return file and shorten_path(self.folder / "published" / file)
 
-    def reconstructed(self, table: Pivot) -> list[str]:
+    def list_reconstructed_problems(self, table: Pivot) -> list[str]:
         """Return the problems of a table on maps that the paper does not print."""
         problems = self.experiments[table.experiment].problems
         shown = convert_to_list(table.where.get("problem", problems))
@@ -116,20 +118,22 @@ class Study(Experiments, ArtefactsFile):
         """The methods of an experiment in a table or figure that selects none: without variants,
         where it is one of the paper's.
         """
-        of_paper = choose_tree(artefact) == PAPER or artefact in self.with_published()
+        of_paper = choose_tree(artefact) == PAPER or artefact in self.find_published_tables()
         methods = self.experiments[experiment].methods
         return [name for name in methods if not (of_paper and name in self.variants())]
 
-    def with_published(self) -> dict[str, Pivot]:
+    def find_published_tables(self) -> dict[str, Pivot]:
         """The tables of runs that have published numbers."""
-        return {name: table for name, table in self.compared().items() if table.published}
+        return {
+            name: table for name, table in self.find_tables_of_runs().items() if table.published
+        }
 
     def verdict_file(self) -> str | None:
         """Its sentences of what follows, relative to the working folder, or None."""
         file = self.folder / "verdict.yaml"
         return shorten_path(file) if file.is_file() else None
 
-    def published_files(self) -> list[str]:
+    def list_published_files(self) -> list[str]:
         """All files of published numbers, relative to the working folder."""
         return [shorten_path(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 

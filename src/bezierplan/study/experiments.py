@@ -309,7 +309,7 @@ class Experiments(ExperimentsFile):
     folder: Path
 
     @classmethod
-    def of(cls, folder: Path, content: dict[str, Any]) -> Self:
+    def build(cls, folder: Path, content: dict[str, Any]) -> Self:
         """A study in a folder, from what its files hold, checked. Raises Fault for a baseline with
         the name of a method.
         """
@@ -321,7 +321,7 @@ class Experiments(ExperimentsFile):
         content = content | {"methods": content["methods"] | content["baselines"]}
         return cls.model_construct(key=folder.resolve().name, folder=folder, **content)
 
-    def accepted(self, method: str) -> dict[str, Any]:
+    def read_accepted_settings(self, method: str) -> dict[str, Any]:
         """Settings accepted by a method's planner, with their annotations."""
         return read_settings(load_planner(self.planner(method)))
 
@@ -330,20 +330,20 @@ class Experiments(ExperimentsFile):
         """Planner -> settings of its methods alone."""
         return {name: each for name, each in self.settings.items() if isinstance(each, dict)}
 
-    def resolved(self, method: str) -> dict[str, Any]:
+    def resolve_settings(self, method: str) -> dict[str, Any]:
         """All settings of a method, by name: the study's that its planner accepts, those of its
         planner, its own, and those that are changed.
         """
-        accepted = self.accepted(method)
+        accepted = self.read_accepted_settings(method)
         common = {name: value for name, value in self.settings.items() if name in accepted}
         return (
             common
             | self.of_planners.get(self.methods[method].planner, {})
             | self.methods[method].settings
-            | self.changed(method)
+            | self.find_changed_settings(method)
         )
 
-    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
+    def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
         """Return the settings of a method that other values of assumptions change, which this file
         does not know: none.
         """
@@ -366,7 +366,7 @@ class Experiments(ExperimentsFile):
         kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
         for name, baseline in self.baselines.items():
             module = load_planner(self.planner(name))
-            varied = content.vary.keys() & self.accepted(name).keys()
+            varied = content.vary.keys() & self.read_accepted_settings(name).keys()
             served = kinds <= set(getattr(module, "workspaces", kinds))
             if served and not varied and moves == bool(baseline.policy):
                 methods.append(name)
@@ -418,7 +418,7 @@ class Experiments(ExperimentsFile):
             for name, described in self.layouts_of(problem, "full").items()
         }
 
-    def described(self, workspace: str) -> dict[str, Any]:
+    def describe_workspace(self, workspace: str) -> dict[str, Any]:
         """The description of a workspace as plain values, with the file of a function that draws
         it.
         """
@@ -435,7 +435,7 @@ def read(folder: Path) -> Experiments:
     """What the file of a study defines. Raises Fault."""
     file = folder / "experiments.yaml"
     content = parse(ExperimentsFile, checked.read(file, shorten_path(file)), shorten_path(file))
-    return Experiments.of(folder, dict(content))
+    return Experiments.build(folder, dict(content))
 
 
 def build_problems_job(study: Experiments, experiment: str, scale: str) -> Descriptions:
@@ -452,5 +452,5 @@ def build_descriptions(study: Experiments, problems: dict[str, dict]) -> Descrip
             name: {key: value for key, value in problem.items() if key != "settings"}
             for name, problem in problems.items()
         },
-        {name: study.described(name) for name in homes},
+        {name: study.describe_workspace(name) for name in homes},
     )

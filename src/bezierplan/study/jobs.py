@@ -56,7 +56,7 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
     """A chunk of runs, which always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale] if study.draws(method) else 1
-    settings = study.resolved(method).items()
+    settings = study.resolve_settings(method).items()
     first = number * size
     vary = {
         name: [value for value in values if content.runs_of(scale, name, value) > first]
@@ -86,12 +86,12 @@ def _list_problems(
     """Places of an experiment's problems that have the repeat `first`, by name, with those of their
     settings that a method leaves open.
     """
-    accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
+    accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings.keys()
     met = {}
     for name, problem in study.problems_of(experiment, scale, first).items():
         settings = {
             key: value for key, value in problem.get("settings", {}).items() if key in accepted
-        } | study.changed(method, name)
+        } | study.find_changed_settings(method, name)
         place = {key: problem[key] for key in PLACE if key in problem}
         met[name] = place | ({"settings": settings} if settings else {})
     return met
@@ -148,7 +148,7 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
     those it selects, for another all (the comparison shows them), for a figure those it selects,
     including baselines if named.
     """
-    if spec := study.compared().get(artefact):
+    if spec := study.find_tables_of_runs().get(artefact):
         methods = study.methods_of(spec.experiment)
         if spec.printed:
             methods = convert_to_list(
@@ -200,7 +200,7 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
 
 def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     """The table of a name."""
-    spec = study.whole(table)
+    spec = study.complete_table(table)
     experiment = study.experiments[spec.experiment]
     # Baselines appear only in the comparison, and there with variants, unless the table has the
     # paper's form.
@@ -208,14 +208,14 @@ def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     if spec.printed:
         where |= spec.primary
     beside = [] if spec.printed else study.methods_of(spec.experiment)
-    file = study.published_file(table)
+    file = study.find_published_file(table)
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
         spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=build_labels(study, table),
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
-        reconstructed=study.reconstructed(spec),
+        reconstructed=study.list_reconstructed_problems(spec),
         fitted=study.fitted.get(spec.extends or table, {}),
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
@@ -229,13 +229,15 @@ def build_table_without_runs(study: Study, scale: str, table: str) -> TableWitho
     """The table of a name."""
     spec = study.tables[table].but(title=table)
     code = study.code_for("functions") if spec.kind == "function" else []
-    file = study.published_file(table)
-    return TableWithoutRuns(spec, sources=[file] if file else study.published_files(), code=code)
+    file = study.find_published_file(table)
+    return TableWithoutRuns(
+        spec, sources=[file] if file else study.list_published_files(), code=code
+    )
 
 
 def build_latex(study: Study, scale: str, table: str) -> Latex:
     """The table of a name."""
-    spec, printed = study.tables[table], study.with_published().get(table)
+    spec, printed = study.tables[table], study.find_published_tables().get(table)
     heads = len(printed.index) if printed else 0
     return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
 
@@ -272,7 +274,7 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
         alternatives=_list_alternatives(study) if spec.claims else [],
         sources=[
             *study.maps([*spec.workspaces, *problems.workspaces]),
-            *(file for file in study.published_files() if spec.draws(Path(file).stem)),
+            *(file for file in study.list_published_files() if spec.draws(Path(file).stem)),
         ],
         shows=find_results(study, figure, scale),
         code=study.code_for(*spec.code),
@@ -369,7 +371,7 @@ def build_claims(study: Study, scale: str) -> Claims:
             for each in study.readings
             if scale == JUDGED_AT and not study.values
         },
-        sources=study.published_files(),
+        sources=study.list_published_files(),
         code=study.code_for("metrics", "functions"),
         shows={
             name: count_chunks(study, name, experiment.methods, scale)
@@ -390,13 +392,13 @@ def build_audit(study: Study, scale: str) -> Audit:
     """The audit of a study."""
     tables = {
         Path(each.published).stem: each.but(title=name, note=None, labels={})
-        for name, each in study.with_published().items()
+        for name, each in study.find_published_tables().items()
     }
     return Audit(
         study.key,
         tables,
-        [name for name, table in tables.items() if study.reconstructed(table)],
-        sources=study.published_files(),
+        [name for name, table in tables.items() if study.list_reconstructed_problems(table)],
+        sources=study.list_published_files(),
         code=study.code_for("metrics", "audit"),
         shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
     )
@@ -434,7 +436,9 @@ def build_baseline_comparison(
 
 def build_summary(studies: Studies, scale: str) -> Summary:
     """All studies."""
-    tables = [(key, name) for key, content in studies.items() for name in content.with_published()]
+    tables = [
+        (key, name) for key, content in studies.items() for name in content.find_published_tables()
+    ]
     code = [module for content in studies.values() for module in content.code_for("metrics")]
     return Summary(tables, code=code)
 

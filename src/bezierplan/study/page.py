@@ -34,10 +34,10 @@ def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
     folder = Path(f"{root}{scale}/{study.key}/{BEYOND}")
     return in_printed_order(
         [
-            *study.named(PAPER),
+            *study.list_names(PAPER),
             *(
                 name
-                for name in study.named(BEYOND)
+                for name in study.list_names(BEYOND)
                 if scale == "extended" or (folder / f"{name}.csv").is_file()
             ),
         ]
@@ -83,7 +83,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             study.artefact(name).title,
             jobs.find_runs_behind(study, name, scale),
             jobs.quote_paper(study, name),
-            study.whole(name) if name in study.tables else None,
+            study.complete_table(name) if name in study.tables else None,
         )
         for name in list_artefacts(study, scale, root)
     }
@@ -94,7 +94,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         methods={
             name: MethodView(
                 study.planner(name),
-                study.resolved(name),
+                study.resolve_settings(name),
                 read_docstring(name_module(study.planner(name))),
             )
             for name in study.methods
@@ -120,7 +120,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
 
 def list_settings(study: Study) -> list[tuple[str, str, str]]:
     """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
-    settings = {method: study.resolved(method) for method in study.methods}
+    settings = {method: study.resolve_settings(method) for method in study.methods}
     for name, workspace in study.workspaces.items():
         maps = study.maps([name])
         content = {"content of the map": compute_content_digest(*maps)} if maps else {}
@@ -146,7 +146,7 @@ def _shorten(text: str) -> str:
 
 def has_audit(study: Study) -> bool:
     """Whether a study has claims or published numbers."""
-    return bool(study.claims or study.with_published())
+    return bool(study.claims or study.find_published_tables())
 
 
 def _count_repeats(study: Study, scale: str) -> list[int]:

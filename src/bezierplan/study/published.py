@@ -76,7 +76,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         known["repeat"] = range(design.repeats)
     shown = {
         f"{value.metric} {statistic}"
-        for each in study.with_published().values()
+        for each in study.find_published_tables().values()
         if each.published == table.published
         for value in each.values
         for statistic in (*value.statistics, "unstated")

@@ -236,7 +236,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
         content["settings"][name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
-    return Study.of(folder, content), faults, invalid
+    return Study.build(folder, content), faults, invalid
 
 
 def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:

@@ -102,7 +102,7 @@ def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
     """Yield what shows the runs of a study, with files in its folder."""
     for table in study.tables:
         csv, tex, *others = study.files_of(table)
-        of_runs = table in study.compared()
+        of_runs = table in study.find_tables_of_runs()
         make = jobs.build_table_of_runs if of_runs else jobs.build_table_without_runs
         yield make(study, scale, table), [csv, *others]
         yield jobs.build_latex(study, scale, table), [tex]

@@ -184,7 +184,7 @@ def run_planner(
         else worker.run_tasks(work, tasks)
     ):
         task = tasks[reply.number]
-        with answer.of(task.name):
+        with answer.wrap_errors(task.name):
             plan = answer.convert_answer(reply.result)
             by_problem.setdefault(task.problem, []).append(reply._replace(result=plan))
     return by_problem

@@ -88,7 +88,7 @@ class Work(NamedTuple):
     worlds: dict[str, World] | None = None
     policy: dict[str, Any] | None = None
 
-    def once(self, task: Task, rng: np.random.Generator) -> Any:
+    def run_task(self, task: Task, rng: np.random.Generator) -> Any:
         """A plan, a track or a ride."""
         module, problem = load_planner(self.planner), self.problems[task.problem]
         if self.worlds:
@@ -142,12 +142,12 @@ def run_tasks(
     Raises PlannerFailure, naming the run. goes_on: such a failure is the run's result instead.
     """
 
-    def one(number: int, task: Task) -> Reply:
+    def run_one(number: int, task: Task) -> Reply:
         begin(task.name)
         rng = task.generator()
         try:
-            with answer.of(task.name):
-                made = time_call(partial(work.once, task, rng))
+            with answer.wrap_errors(task.name):
+                made = time_call(partial(work.run_task, task, rng))
         except PlannerFailure as failure:
             if not goes_on:
                 raise
@@ -155,9 +155,9 @@ def run_tasks(
         return Reply(number, *made, has_drawn(task.generator(), rng))
 
     if again:
-        yield from warm_up(partial(one, -len(tasks), again[0]))
+        yield from warm_up(partial(run_one, -len(tasks), again[0]))
     for number, task in enumerate(tasks):
-        yield one(number, task)
+        yield run_one(number, task)
 
 
 def has_drawn(before: np.random.Generator, after: np.random.Generator) -> bool:
@@ -203,7 +203,7 @@ def yield_plain_answers(
         try:
             if isinstance(plan, PlannerFailure):
                 raise plan
-            with answer.of(task.name):
+            with answer.wrap_errors(task.name):
                 if work.function == "plan" and not work.worlds:
                     plan = answer.convert_answer(plan)
             yield reply._replace(result=plain.pack(plan))

@@ -128,14 +128,14 @@ def find_way_to_start(
     if there is none.
     """
     robot = motion.points[-1]
-    begin = _start(grid, robot, start)
+    begin = _find_start(grid, robot, start)
     if begin is not None:
         return np.array([robot, begin])
     back = motion.points[::-1]
     lengths = ways.measure_lengths(back)
     for s in np.arange(_BACK, lengths[-1], _BACK):
         robot = Way(back, lengths).place(s)
-        begin = _start(grid, robot, start)
+        begin = _find_start(grid, robot, start)
         if begin is not None:
             return np.concatenate([back[lengths < s], [robot, begin]])
     return motion.points[-1:]
@@ -156,7 +156,7 @@ def bound_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float
     return ways.build_way(approach).length + rest
 
 
-def _start(
+def _find_start(
     grid: Grid, place: np.ndarray, start: Literal["position", "centre"]
 ) -> np.ndarray | None:
     """Where a plan begins for a robot at a place, or None if that is occupied."""

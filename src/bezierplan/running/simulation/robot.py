@@ -157,7 +157,7 @@ def _plan(
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, measure_cpu_time()
 
-    def made(path: Path | None, length: float, margin: float) -> DrivePlan:
+    def record_plan(path: Path | None, length: float, margin: float) -> DrivePlan:
         return DrivePlan(time, path, length, margin, measure_cpu_time() - began, evaluations)
 
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
@@ -169,7 +169,7 @@ def _plan(
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
-            return made(None, 0.0, margin), build_way(approach), state
+            return record_plan(None, 0.0, margin), build_way(approach), state
         if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
         plan, next_state = planner(seen, state)
@@ -178,8 +178,8 @@ def _plan(
             along = build_way(
                 np.concatenate([approach, build_drivable(plan.path, policy.spacing, obstacles)])
             )
-            return made(plan.path, along.length, margin), along, next_state
-    return made(None, math.inf, math.nan), None, state
+            return record_plan(plan.path, along.length, margin), along, next_state
+    return record_plan(None, math.inf, math.nan), None, state
 
 
 def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:
