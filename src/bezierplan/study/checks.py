@@ -1,5 +1,5 @@
-"""Checks across the files of a study: names defined in other files, planners and their settings,
-free places, matching published numbers. Every fault is one line, and all are found at once.
+"""Checks across the files of a study: names that other files define, planners and their settings,
+free places, matching published numbers. Each fault is one line, and all are found in one pass.
 """
 
 import difflib
@@ -44,16 +44,16 @@ from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.problem import Problem
 
 RESERVED = columns.TAKEN.union(columns.WORDS) - {"generations"}
-"""Names that no setting can have. The column `generations` holds the number actually performed, so
-a setting of that name adds nothing.
+"""Names that no setting can have. `generations` is allowed: the column holds the number actually
+performed, so a setting of that name adds nothing.
 """
 
 
 class Checks:
-    """The checks of a study whose files are each valid on their own. Their methods raise a fault
-    without the place where it stands.
+    """Check a study whose files are each valid on their own. The methods raise Fault without the
+    place, which `at` adds.
 
-    invalid: names of entries that are left out, because they are not valid.
+    invalid: names of entries that are left out because they are not valid.
     """
 
     def __init__(self, study: Study, invalid: Iterable[str] = ()) -> None:
@@ -85,7 +85,9 @@ class Checks:
 
     @contextmanager
     def at(self, *place: str) -> Iterator[None]:
-        """A place in the files; a fault there ends only what is checked there."""
+        """Name a place in the files for the faults of a block. A fault ends the block, not the
+        checks after it.
+        """
         outer, self._place = self._place, (*self._place, *place)
         try:
             yield
@@ -105,7 +107,10 @@ class Checks:
     def check_entries(
         self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]
     ) -> None:
-        """Check the entries of a section of a file, and leave out those that have a fault."""
+        """Check each entry of a section of a file with `work`, and drop the entries that have a
+        fault.
+        """
+        # A copy, because entries with a fault leave the mapping.
         for name, entry in [*entries.items()]:
             with self.at(section, name):
                 work(name, entry)
@@ -113,9 +118,10 @@ class Checks:
                 entries.pop(name)
 
     def check(self) -> list[str]:
-        """All faults, one line each."""
+        """Return all faults, one line each."""
         study = self.study
         with self.at(shorten_path(study.folder / "experiments.yaml")):
+            # Methods come first: all that follows loads their planners.
             self.check_entries("methods", study.methods, self.check_method)
             # A planner that has a fault may have any settings.
             self.complete = not self.invalid
@@ -140,6 +146,7 @@ class Checks:
                             check_all(family.problems, listed, "problems")
         with self.at():
             named = " ".join(read_text(file, "") for file in study.folder.glob("*.yaml"))
+            # A file that no table names would never be compared, without a word.
             for file in map(Path, study.list_published_files()):
                 header = {*next(iter(published.read(file).values()))}
                 if header.issuperset(published.COLUMNS) and file.stem not in named:
@@ -183,7 +190,9 @@ class Checks:
     # experiments.yaml
 
     def check_method(self, name: str, method: Method) -> None:
-        """Its planner has the interface of one, and nothing of its own is named like a column."""
+        """Check that a method's planner has the interface of one, and that none of its settings and
+        columns has the name of a column of results.
+        """
         self.check_names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
@@ -201,10 +210,13 @@ class Checks:
             and not hasattr(module, "resume")
         ):
             raise Fault(f"policy: {method.policy}: warm, but its planner has no function resume")
+        # Panels and claims can use what the planner reports as a metric.
         metrics.add_columns(extra)
 
     def check_shared_settings(self) -> None:
-        """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
+        """Check that some planner accepts each setting of all methods, of a planner's methods, and
+        of presets.
+        """
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
         used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
@@ -224,8 +236,8 @@ class Checks:
                 check_all(settings, used, f"presets: {preset}: {value}")
 
     def check_settings(self, study: Study, name: str) -> None:
-        """Each setting of a method has a value that its planner accepts, also on a problem where
-        the study has another one.
+        """Check that each setting of a method has a value that its planner accepts, also on
+        problems where an assumption changes it.
         """
         own = [each.problems for each in study.assumptions if each.id in study.values]
         for problem in {"", *itertools.chain.from_iterable(own)}:
@@ -233,13 +245,16 @@ class Checks:
             interface.check_settings(load_planner(study.planner(name)), settings, "settings")
 
     def check_workspace(self, name: str, workspace: Workspace) -> None:
-        """It can be read."""
+        """Check that a workspace's map can be read."""
         self.check_names(workspace)
+        # Maps of other kinds follow from a problem, and `check_problem` builds them.
         if not workspace.draws and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
     def check_problem(self, name: str, problem: ProblemEntry) -> None:
-        """It has the keys of its kind of workspace, and lies in free space."""
+        """Check that a problem has the keys of its kind of workspace, and that its ends lie in free
+        space.
+        """
         self.check_names(problem)
         if self.complete:
             check_all(problem.settings, self.known["setting"], "settings")
@@ -255,16 +270,19 @@ class Checks:
         self.build_problem(name)
 
     def _build_problem(self, name: str) -> Problem:
-        """A problem as planners see it, in the first layout if there are several. Raises
-        ValueError.
+        """Return a problem as planners see it; in the first layout and with the most obstacles if
+        these are drawn. Raises ValueError.
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
+        # With fewer circles of the same layout, the ends are free too.
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
         described = build_descriptions(study, {name: problem.plain("layouts") | drawn})
         return problems.build_all(described, study.folder)[0][name]
 
     def check_experiment(self, name: str, experiment: Experiment) -> None:
-        """Its problems and methods suit each other, and what it varies exists."""
+        """Check that the problems and methods of an experiment suit each other, and that what it
+        varies exists.
+        """
         self.check_names(experiment)
         study, moves = self.study, self.study.moves(name)
         for problem in experiment.problems:
@@ -286,8 +304,10 @@ class Checks:
         }
         check_all(experiment.vary, accepted | set(study.presets), "vary")
         for setting in experiment.vary.keys() & study.presets.keys():
+            # Presets have text as keys, so true in a list stands for `true`.
             values = (str(value).lower() for value in experiment.vary[setting])
             check_all(values, study.presets[setting], f"vary: {setting}")
+        # A baseline joins without being listed.
         factors = {"method": [*experiment.methods, *study.baselines]} | experiment.vary
         factors["problem"] = experiment.problems
         check_all(experiment.fewer, factors, "fewer")
@@ -297,13 +317,14 @@ class Checks:
             self.check_method_in(name, experiment, method)
 
     def check_method_in(self, name: str, experiment: Experiment, method: str) -> None:
-        """A method's planner supports the problems of an experiment, and its settings are valid
-        under every condition.
+        """Check that a method's planner serves the problems of an experiment, and that its settings
+        are valid under each condition.
         """
         study, where = self.study, f"methods: {method}"
         module = load_planner(study.planner(method))
         for problem in experiment.problems:
             kind = study.kind_of(problem)
+            # A planner that names no kinds serves all.
             if kind not in getattr(module, "workspaces", (kind,)):
                 served = ", ".join(module.workspaces)
                 raise Fault(
@@ -331,8 +352,9 @@ class Checks:
     # Names defined elsewhere
 
     def check_names(self, model: Model) -> None:
-        """Names in a model refer to something that exists. The columns of a panel without runs
-        belong to its function.
+        """Check that the names in a model refer to something that exists.
+
+        The columns of a panel without runs are not checked: its function makes them.
         """
         experiments = convert_to_list(getattr(model, "experiment", None) or [])
         claim = isinstance(model, ClaimCheck)
@@ -351,7 +373,7 @@ class Checks:
                 self.check_arguments(self.known[what][name], getattr(model, "arguments", {}))
 
     def _join_runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
-        """The runs of experiments; those of claims without baselines."""
+        """Return the planned runs of experiments; for a claim, without those of baselines."""
         return join_designs(
             [self.design(each) for each in experiments], self.study.baselines if claim else ()
         )
@@ -359,8 +381,10 @@ class Checks:
     def check_name_in_runs(
         self, experiments: tuple[str, ...], claim: bool, what: str, name: Any, key: str
     ) -> None:
-        """A metric, a column, a selection, a repeat or a problem exists in the runs of
-        experiments.
+        """Check that the runs of some experiments have a metric, a column, a selection, a repeat or
+        a problem.
+
+        what: the kind of name, as `Names` says. key: the key in the file, for messages.
         """
         runs = self.runs(experiments, claim)
         match what:
@@ -379,7 +403,9 @@ class Checks:
                 check_known(name, runs.values("problem"), key)
 
     def check_arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
-        """A function's keyword-only arguments are given, each as its annotation says."""
+        """Check that a function's keyword-only arguments are given, each of the type that its
+        annotation says.
+        """
         accepted = {}
         for name, parameter in inspect.signature(function).parameters.items():
             if parameter.kind is parameter.KEYWORD_ONLY:
@@ -393,7 +419,7 @@ class Checks:
     # artefacts.yaml
 
     def check_table(self, name: str, table: TableEntry) -> None:
-        """Its names exist, and its file of published numbers fits it."""
+        """Check that the names of a table exist, and that its file of published numbers fits it."""
         self.check_names(table)
         if isinstance(table, Pivot) and table.published:
             runs = self.design(table.experiment)
@@ -401,8 +427,8 @@ class Checks:
             runs.check_where(table.primary, "primary")
 
     def check_labels(self) -> None:
-        """Looks are of methods; labels tell these apart, and are of what experiments.yaml names, of
-        columns, metrics and statistics, or of words of a function's table.
+        """Check that looks belong to methods, that labels tell methods apart, and that each label
+        belongs to a name that the study uses.
         """
         study = self.study
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
@@ -415,11 +441,13 @@ class Checks:
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
             for name in getattr(each, "labels", {}).keys() - words:
+                # A misspelt name is most likely one of the study's own, so only these are suggested
+                # if one is close.
                 near = difflib.get_close_matches(name, own)
                 check_known(name, near or words, "labels")
 
     def check_figure(self, name: str, figure: Figure) -> None:
-        """Its panels' names exist."""
+        """Check that the names in a figure's panels exist."""
         if name in self.study.tables:
             raise Fault("a table has this name already")
         for panel in figure.panels:
@@ -428,8 +456,8 @@ class Checks:
                 self.check_panel(panel)
 
     def check_panel(self, panel: Panel) -> None:
-        """A panel's runs are of the kind that it shows, of one method if it shows one run, and of
-        enough methods.
+        """Check that a panel's runs are of the kind that it shows, and of one method if it shows
+        one run.
         """
         if not (experiment := getattr(panel, "experiment", None)):
             return
@@ -448,7 +476,7 @@ class Checks:
     # claims.yaml and assumptions.yaml
 
     def check_claim(self, identity: str, claim: Claim) -> None:
-        """The names of its checks exist, and its variants select runs."""
+        """Check that the names in a claim's checks exist, and that its variants select runs."""
         self.check_names(claim)
         first, *_ = variants(claim)
         judged = in_variant(claim.checks, first, first)
@@ -472,12 +500,11 @@ class Checks:
                     )
 
     def check_unmixed(self, check: OfRuns) -> None:
-        """A unit of a comparison has runs of one experiment, condition and method. Ranks are taken
-        among the runs of an artefact alone.
-        """
+        """Check that each unit of a comparison has runs of one experiment, condition and method."""
         rows = self.runs(tuple(check.experiments), True).rows
         planned = check.where.keys() & {*rows} - {"repeat"}
         rows = select(rows, {column: check.where[column] for column in planned})
+        # Ranks are taken among the runs of an artefact alone.
         factor = "" if check.metric == "rank" else mixed(check, rows)
         if factor:
             vary = [self.study.experiments[name].vary for name in check.experiments]
@@ -491,8 +518,8 @@ class Checks:
             )
 
     def check_assumption(self, identity: str, assumption: AssumptionEntry) -> None:
-        """Its names are those of the study, and every alternative is a valid value of what it
-        governs.
+        """Check that an assumption's names are those of the study, and that each alternative is a
+        valid value of what it governs.
         """
         self.check_names(assumption)
         study = self.study
@@ -510,6 +537,7 @@ class Checks:
         if not assumption.setting:
             return
         methods = study.list_governed_methods(assumption)
+        # A planner with a fault may have any settings.
         if not methods and self.complete:
             used = self.known["setting"] - {assumption.setting}
             check_known(assumption.setting, used, "setting")
@@ -523,8 +551,8 @@ class Checks:
                     self.check_settings(changed, method)
 
     def check_reading(self, name: str, reading: ReadingEntry) -> None:
-        """Its values are alternatives that a run can have, all at once, and its claims rest on
-        runs.
+        """Check that a reading's values are alternatives which a run can have all at once, and that
+        its claims rest on runs.
         """
         study, settled = self.study, {}
         known = {each.id: each for each in study.assumptions}
@@ -537,11 +565,13 @@ class Checks:
                 raise Fault(f"values: {key}: governs no setting, so that no run can have it")
             if assumption.excluded_by:
                 raise Fault(f"values: {key}: excluded by {assumption.excluded_by}")
+            # True equals 1 in Python, but is another value of a setting.
             if identify(value) not in map(identify, assumption.alternatives):
                 raise Fault(
                     f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
                 )
             for method in study.list_governed_methods(assumption):
+                # Two assumptions about one setting of a method could not both hold.
                 place = (method, assumption.setting, *assumption.problems)
                 if other := settled.get(place):
                     raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
@@ -564,8 +594,8 @@ class Checks:
 
 
 def check_inside(folder: Path, name: str, location: str) -> None:
-    """Raise Fault, beginning with a location, for a file of a study that is missing, is not a
-    regular file, or lies outside its folder, also through a link.
+    """Raise Fault, beginning with a location, unless a file of a study is a regular file inside its
+    folder; links are followed.
     """
     file = folder / name
     if not file.resolve().is_relative_to(folder.resolve()):

@@ -1,4 +1,4 @@
-"""The job that shows all results of a scale: the page."""
+"""The job that makes the page of a scale."""
 
 import hashlib
 from pathlib import Path
@@ -22,12 +22,12 @@ from bezierplan.study.jobs import Studies
 
 RESULTS = "results/"
 _LONG = 80
-"""Characters of a value that stand where settings are compared."""
+"""Most characters of a value in the table of settings."""
 
 
 def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
-    """Names of the tables and figures of a study that the page shows: those of the paper, and of
-    the others what there is; at scale extended all.
+    """Return the names of the tables and figures of a study that the page shows: all of the paper,
+    and those of the others that exist (at scale extended all).
 
     root: the folder of all scales, with a slash at its end.
     """
@@ -45,7 +45,7 @@ def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
 
 
 def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
-    """The results behind all tables, figures and claims that the page shows."""
+    """Return the results behind all tables, figures and claims that the page shows."""
     behind: Shows = {}
     for key, study in studies.items():
         parts = [
@@ -61,10 +61,12 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
 
 
 def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
-    """The page of a scale."""
+    """Build the job that makes the page of a scale."""
     behind, outcome = find_results(studies, scale, root), any(map(_is_of_project, studies.values()))
     shown = {key: _describe_study(own, scale, root) for key, own in studies.items()}
     return Page(
+        # The evidence in docs/outcome comes from scale extended; its own page has the results
+        # themselves.
         PageJob(scale, shown, outcome=outcome and scale != "extended"),
         sources=files(),
         shows=behind,
@@ -73,11 +75,12 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
 
 
 def _is_of_project(study: Study) -> bool:
+    """Return whether a study is one of this project."""
     return study.folder.resolve().is_relative_to(STUDIES)
 
 
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
-    """What the page needs of a study beside its results."""
+    """Return what the page needs to know of a study beside its results."""
     artefacts = {
         name: ArtefactView(
             study.artefact(name).title,
@@ -119,9 +122,12 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
 
 
 def list_settings(study: Study) -> list[tuple[str, str, str]]:
-    """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
+    """Return all settings of a study as rows of owner, setting and value. The owner is a method, or
+    a kind and a name such as `workspace room`.
+    """
     settings = {method: study.resolve_settings(method) for method in study.methods}
     for name, workspace in study.workspaces.items():
+        # A map is a setting too: the digest shows that its file has changed.
         maps = study.maps([name])
         content = {"content of the map": compute_content_digest(*maps)} if maps else {}
         settings[f"workspace {name}"] = workspace.plain() | content
@@ -139,18 +145,18 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
 
 
 def _shorten(text: str) -> str:
-    """A text, of a long one a digest."""
+    """Return a text, cut if it is long, with a digest of the whole."""
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
 
 
 def has_audit(study: Study) -> bool:
-    """Whether a study has claims or published numbers."""
+    """Return whether a study has claims or published numbers."""
     return bool(study.claims or study.find_published_tables())
 
 
 def _count_repeats(study: Study, scale: str) -> list[int]:
-    """The least and the largest number of runs of a method under a condition."""
+    """Return the least and the largest number of runs of a method under a condition."""
     counts = []
     for experiment in study.experiments.values():
         fewer = experiment.fewer.values() if scale == "extended" else ()
