@@ -108,7 +108,9 @@ class Study(Experiments, ArtefactsFile):
         return spec.but(**{name: getattr(printed, name) for name in shared})
 
     def find_published_file(self, table: str) -> str | None:
-        """Return the file of a table's published numbers, relative to the working folder, or None."""
+        """Return the file of a table's published numbers, relative to the working folder; None
+        without one.
+        """
         file = getattr(self.complete_table(table), "published", None)
         return file and shorten_path(self.folder / "published" / file)
 

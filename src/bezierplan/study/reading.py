@@ -31,7 +31,9 @@ Folders = dict[Path, dict[str, Any]]
 
 
 def find_config_file() -> Path:
-    """Return the file that names the studies to run: the working folder's, otherwise the project's."""
+    """Return the file that names the studies to run: the working folder's, otherwise the
+    project's.
+    """
     own = Path("config", "config.yaml")
     return own if own.is_file() else TREE / own
 
