@@ -1,6 +1,6 @@
-"""Output of Snakemake while it works: in a terminal the rich logger's progress bars, without one a
-line every 15 seconds or less often. At the end: what was made, where it is, and the time taken; or
-why jobs failed, a line for each fault.
+"""Output of Snakemake while it works: in a terminal the rich logger's progress bars, otherwise a
+line at most every 15 seconds. At the end: what was made, where it is, and the time taken; or why
+jobs failed, a line for each fault.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
 one.
@@ -18,7 +18,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 from snakemake_logger_plugin_rich import LogHandler as RichHandler
 
 REASON = "CRITICAL "
-"""What comes, in a job's log, before the line that says why the job failed
+"""Beginning of the line in a job's log that says why the job failed
 (`bezierplan.running.jobs.log`).
 """
 LOCKED = (
@@ -27,16 +27,18 @@ LOCKED = (
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
 NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
-"""How messages begin that tell a user nothing."""
+"""Beginnings of messages that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
 MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
-"""What is counted at the end, by the end of a file of it."""
+"""What is counted at the end -> the end of its file's name."""
 BETWEEN_LINES = 15.0
-"""Least time between two lines of progress without a terminal, in seconds."""
+"""Least seconds between two lines of progress without a terminal."""
 
 
 class LogHandler(RichHandler):
+    """The rich logger, with fewer and clearer lines."""
+
     def __post_init__(self) -> None:
         super().__post_init__()
         self.progress.columns += (MofNCompleteColumn(), TimeRemainingColumn())
@@ -50,6 +52,7 @@ class LogHandler(RichHandler):
         self.reasons: dict[int | None, str] = {}
 
     def emit(self, record: LogRecord) -> None:
+        """Show a record of Snakemake, keep it as a reason why a job failed, or drop it."""
         event, message = getattr(record, "event", None), record.getMessage()
         job = getattr(record, "jobid", None) if event == LogEvent.JOB_ERROR else None
         fault = getattr(record, "exception", None) if event == LogEvent.ERROR else None
@@ -82,11 +85,14 @@ class LogHandler(RichHandler):
                 self.show_progress()
 
     def say(self, *lines: str) -> None:
+        """Print lines without wrapping or colours."""
         for line in lines:
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def find_reason(self, job: int) -> str:
-        """Why a job failed, as the last lines of its log say; if they do not, where the log is."""
+        """Return why a job failed, from the last lines of its log; if these do not say it, where
+        the log is.
+        """
         logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
         for log in map(Path, logs):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
@@ -102,7 +108,7 @@ class LogHandler(RichHandler):
         self.reasons.clear()
 
     def show_progress(self) -> None:
-        """Print a line, unless the last one is too fresh."""
+        """Print a line of progress, unless the last one is too recent."""
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
@@ -116,7 +122,9 @@ class LogHandler(RichHandler):
 
 
 def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """What was made, where the results are, how long it took, and last the page."""
+    """Return the lines at the end: what was made, where the results are, the time, and last the
+    page.
+    """
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
     made = [
@@ -132,7 +140,9 @@ def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
 
 
 def describe_unknown_target(message: str) -> str:
-    """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
+    """Return the message about a target that no rule makes, from Snakemake's own; empty for another
+    one.
+    """
     from bezierplan.schema.checked import suggest_closest
 
     match = re.search(r"No rule to produce (\S+)", message)
@@ -140,5 +150,5 @@ def describe_unknown_target(message: str) -> str:
 
 
 def format_duration(seconds: float) -> str:
-    """A time as h:mm:ss."""
+    """Return seconds as h:mm:ss."""
     return str(timedelta(seconds=round(seconds)))

@@ -437,12 +437,11 @@ class Checks:
             label = study.labels.get(name, name)
             if (other := printed.setdefault(label, name)) != name:
                 raise Fault(f"labels: {other}, {name}: both {label}; expected a label for each")
+        # A misspelt name is most likely one of the study's own, so these are suggested first.
         own = re.findall(r"[\w.+-]+", read_text(study.folder / "experiments.yaml", ""))
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
             for name in getattr(each, "labels", {}).keys() - words:
-                # A misspelt name is most likely one of the study's own, so only these are suggested
-                # if one is close.
                 near = difflib.get_close_matches(name, own)
                 check_known(name, near or words, "labels")
 
