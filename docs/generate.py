@@ -247,7 +247,7 @@ def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
     """
     given: dict[str, list[str]] = {}
     for method in methods:
-        resolved = study.definition.resolved(method)
+        resolved = study.definition.resolve_settings(method)
         if setting in resolved:
             label = study.job.labels.get(method, in_words(method))
             given.setdefault(in_words(resolved[setting]), []).append(label)

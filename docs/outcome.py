@@ -74,7 +74,7 @@ def main() -> None:
     tables = {
         key: {
             name: (study.tables[name].title, len(study.tables[name].index))
-            for name, table in study.compared().items()
+            for name, table in study.find_tables_of_runs().items()
             if table.published and table.printed
         }
         for key, study in studies.items()
@@ -171,7 +171,9 @@ def identified(folder: Path, studies: Mapping[str, Study]) -> str:
     parts = ["# Printed lengths of paths that can be listed", IDENTIFIED, picture]
     for key, study in studies.items():
         rules = tuple(
-            entry.because for table in study.compared().values() for entry in table.identify
+            entry.because
+            for table in study.find_tables_of_runs().values()
+            for entry in table.identify
         )
         rows = pd.read_csv(folder / f"{key}_audit.csv", keep_default_na=False)
         if not rules or (rows := rows[rows["rule"].str.startswith(rules)]).empty:

@@ -114,14 +114,14 @@ def columns_of(table: columns.Table) -> str:
     return _columns(
         [
             (name, kind, about.unit, _meaning(about))
-            for name, (kind, about) in columns.declared(*table.every).items()
+            for name, (kind, about) in columns.read_columns(*table.every).items()
         ]
     )
 
 
 def columns_of_drives(table: columns.Table) -> str:
     """Likewise of drives: columns that mean something else, and those that only drives have."""
-    every, own = columns.declared(*table.every), columns.declared(table.drives)
+    every, own = columns.read_columns(*table.every), columns.read_columns(table.drives)
     other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
     return _columns(
         [
@@ -139,7 +139,7 @@ def columns_of_claims(tables: tuple[type, ...]) -> str:
     """The table of columns of a table of claims, as Markdown."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
-        for name, (kind, about) in columns.declared(*tables).items()
+        for name, (kind, about) in columns.read_columns(*tables).items()
     ]
     return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
 

@@ -73,5 +73,5 @@ def problem_of(key: str, name: str) -> Problem:
 def planned(key: str, method: str, problem: Problem, seed: int = 0, **changes: Any) -> Plan:
     """The plan of a method of a study, with its settings but for some changes."""
     own = study(key)
-    settings = own.resolved(method) | changes
+    settings = own.resolve_settings(method) | changes
     return load_planner(own.planner(method)).plan(problem, np.random.default_rng(seed), **settings)

@@ -18,7 +18,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = study("elhoseny2017").resolved("abc_ep")
+SETTINGS = study("elhoseny2017").resolve_settings("abc_ep")
 plan = partial(planned, "elhoseny2017", "abc_ep")
 
 

@@ -50,7 +50,8 @@ def test_a_page_of_python_finds_what_the_kernel_finds(case):
     key, experiment = case
     page = load_planner(str(ALGORITHMS / f"{key}.py"))
     home, _, method = page.METHOD.partition("/")
-    kernel, settings = load_planner(study(home).planner(method)), study(home).resolved(method)
+    kernel = load_planner(study(home).planner(method))
+    settings = study(home).resolve_settings(method)
     assert page.plan.__kwdefaults__.items() <= settings.items()
     names, changes = CASES[case]
     problems = [built(study(home), experiment, name) for name in names]

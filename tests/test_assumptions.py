@@ -90,7 +90,10 @@ def test_alternative_changes_what_a_run_finds(key, name):
         study = study.but(methods=study.methods | methods)
     assumption, value = alternatives(study)[name]
     changed = apply_values(study, {assumption.id: value})
-    places = {method: place_of(study, assumption, method) for method in study.concerned(assumption)}
+    places = {
+        method: place_of(study, assumption, method)
+        for method in study.list_governed_methods(assumption)
+    }
     assert any(
         found(changed, home(study, method), method, place)
         != (

@@ -18,7 +18,7 @@ from bezierplan.planners import binary_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Path, Problem
 
-DEFAULT = study("song2016").resolved("smooth") | {"population": 20, "generations": 10}
+DEFAULT = study("song2016").resolve_settings("smooth") | {"population": 20, "generations": 10}
 # The objective is that of the best chromosome, with all its points.
 SETTINGS = DEFAULT | {"rejection": "none"}
 SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 501, "bezier": 601}

@@ -18,7 +18,7 @@ from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = study("tharwat2018").resolved("pso")
+SETTINGS = study("tharwat2018").resolve_settings("pso")
 
 EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])

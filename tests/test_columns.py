@@ -72,8 +72,8 @@ def test_a_digest_does_not_depend_on_the_type_of_no_values():
 
 def test_every_column_says_what_it_means():
     for kind in columns.TABLES.values():
-        for _, about in columns.declared(*kind.every, kind.drives).values():
+        for _, about in columns.read_columns(*kind.every, kind.drives).values():
             assert about.meaning
             assert about.unit in ("", "units", "steps", "s")
     for tables in claim_columns.TABLES.values():
-        assert all(about.meaning for _, about in columns.declared(*tables).values())
+        assert all(about.meaning for _, about in columns.read_columns(*tables).values())

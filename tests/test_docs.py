@@ -119,7 +119,7 @@ def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
         "studies": [f"{tmp_path}/song2016"],
         "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}},
     }
-    resolved = reading.load(reading.read_config(given))["song2016"].resolved("smooth")
+    resolved = reading.load(reading.read_config(given))["song2016"].resolve_settings("smooth")
     assert (
         resolved["penalty"],
         resolved["generations"],

@@ -11,7 +11,7 @@ from bezierplan.study import jobs
 def artefacts(own):
     """The jobs of a study's tables of runs and figures."""
     return {name: jobs.build_figure(own, "full", name) for name in own.figures} | {
-        name: jobs.build_table_of_runs(own, "full", name) for name in own.compared()
+        name: jobs.build_table_of_runs(own, "full", name) for name in own.find_tables_of_runs()
     }
 
 

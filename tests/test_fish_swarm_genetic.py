@@ -22,7 +22,7 @@ from bezierplan.workspaces.lattice import build_grid_lattice
 COLUMNS = 12
 GRID = Grid(np.zeros((COLUMNS, COLUMNS), dtype=bool), 1.0, "unit")
 PLACES = build_grid_lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
-SWARM = fill_settings(Settings, study("ma2020").resolved("asfa_ga") | {"fish": 5})
+SWARM = fill_settings(Settings, study("ma2020").resolve_settings("asfa_ga") | {"fish": 5})
 
 
 def cell(row, column):

@@ -117,10 +117,10 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
 
 def test_the_papers_own_are_the_numbered_ones():
     for own in studies().values():
-        names = own.named(PAPER)
+        names = own.list_names(PAPER)
         assert all(re.fullmatch(r"(table|figure)\d+", name) for name in names)
-        assert sorted([*names, *own.named(BEYOND)]) == sorted([*own.tables, *own.figures])
-    counts = [len(own.named(PAPER)) for own in studies().values()]
+        assert sorted([*names, *own.list_names(BEYOND)]) == sorted([*own.tables, *own.figures])
+    counts = [len(own.list_names(PAPER)) for own in studies().values()]
     assert counts == [6, 20, 28, 7, 11]
 
 

@@ -287,7 +287,7 @@ def test_a_drive_out_of_the_field_is_as_deep_as_it_is_far_out(beyond, turned):
 
 def test_a_warm_start_begins_at_the_known_path():
     """Whatever random numbers the rest of the swarm has."""
-    settings = study("tharwat2018").resolved("swarm_warm")
+    settings = study("tharwat2018").resolve_settings("swarm_warm")
     world = Circles((0.0, 20.0, 0.0, 20.0), np.array([[10.0, 10.0]]), np.array([2.0]), "m")
     problem = Problem("one", world, (2.0, 10.0), (18.0, 10.0))
     first, known = warm_swarm.resume(problem, np.random.default_rng(1), None, **settings)

@@ -11,7 +11,7 @@ ROUTE, PAGE = Path("results/full/song2016/runs/routes/0.parquet"), Path("results
 
 def test_the_last_line_names_the_page(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert plugin.last_lines({ROUTE}, 203.77) == [
+    assert plugin.list_last_lines({ROUTE}, 203.77) == [
         "Results: results/full/song2016",
         "Time: 0:03:24",
     ]
@@ -19,7 +19,7 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
     PAGE.write_text('<p class="headline">Of 3 numbers 2 fit.</p>')
     page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
     made = {PAGE, *(ROUTE.with_name(name) for name in ("a.tex", "b.tex", "c.svg", "c.png"))}
-    assert plugin.last_lines(made, 1) == [
+    assert plugin.list_last_lines(made, 1) == [
         "Made: 2 tables, 1 figure, 1 page",
         "Results: results/full, results/full/song2016",
         "Time: 0:00:01",
@@ -41,6 +41,6 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
 )
 def test_a_mistyped_target_gets_the_nearest_name(message, reason, monkeypatch):
     monkeypatch.setattr(plugin, "KNOWN", {"all", "song2016_figure4"})
-    answer = plugin.unknown_target(message)
+    answer = plugin.describe_unknown_target(message)
     assert answer.startswith(reason)
     assert bool(answer) == bool(reason)

@@ -15,7 +15,7 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
 DATA = Path(__file__).parent / "data"
-COLONY = study("ma2020").resolved("aco")
+COLONY = study("ma2020").resolve_settings("aco")
 VARIANTS = {
     "aco": ("aco", {}),
     "aco_strong": ("aco_strong", {}),
@@ -44,7 +44,7 @@ def environment(number):
 
 def plan(name, problem=None, seed=0, **changes):
     method, variant = VARIANTS[name]
-    known = study("ma2020").resolved(method)
+    known = study("ma2020").resolve_settings(method)
     changes = {key: value for key, value in changes.items() if key in known}
     return planned("ma2020", method, problem or environment(1), seed, **variant | changes)
 

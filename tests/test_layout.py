@@ -163,7 +163,7 @@ def test_an_artefact_has_the_form_of_the_printed_one(study, name):
 
 def test_a_paper_has_exactly_these_artefacts():
     for own in studies().values():
-        assert set(own.named("paper")) == set(own.layout)
+        assert set(own.list_names("paper")) == set(own.layout)
 
 
 def behind(own, name):
@@ -207,7 +207,7 @@ def facts(own, experiment, where):
             homes.add(plain["workspace"])
             yield from of_workspace(built(own, experiment, problem).workspace)
         for method in filter(lambda name: selected("method", name), content.methods):
-            settings = own.resolved(method) | plain.get("settings", {})
+            settings = own.resolve_settings(method) | plain.get("settings", {})
             for factor, values in content.vary.items():
                 settings.pop(factor, None)
                 for value in filter(lambda value: selected(factor, value), values):
@@ -316,6 +316,6 @@ def test_printed_numbers_are_those_of_a_second_transcription(study, name):
         for line in block.split("\n\n")[0].splitlines()
     ]
     laid = text(SMOKE / study / "paper" / f"{name}.published.csv").iloc[:, -count:]
-    numbers = text(own.published_file(name))
+    numbers = text(own.find_published_file(name))
     assert laid.to_numpy().tolist() == wanted
     assert len(numbers) == sum(map(len, wanted)) - layout.form.get("dashes", 0)

@@ -192,7 +192,7 @@ def test_the_cheapest_path_is_not_the_shortest():
 
 
 def test_the_search_finds_the_cheapest_path_over_the_hill():
-    settings = STUDY.resolved("proposed")
+    settings = STUDY.resolve_settings("proposed")
     found = [
         node_genetic.plan(problem("hill"), np.random.default_rng(seed), **settings)
         for seed in range(10)

@@ -21,7 +21,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 
-SETTINGS = study("elhoseny2017").resolved("mga")
+SETTINGS = study("elhoseny2017").resolve_settings("mga")
 run = partial(planned, "elhoseny2017", "mga")
 FIELD = drawn(0, obstacles=15)
 FEW = {"population": 20, "iterations": 10}

@@ -47,7 +47,7 @@ OPTIMA = {
     "env2_initial": 35.605289,
     "env2_modified": 32.250610,
 }
-SETTINGS = study("meledje").resolved("proposed")
+SETTINGS = study("meledje").resolve_settings("proposed")
 plan = partial(planned, "meledje", "proposed", population=20, generations=30)
 random_grid = partial(fields.random_grid, shape=(9, 12))
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")

@@ -51,7 +51,7 @@ def test_a_map_in_other_units_is_searched_alike(method):
     declared = read_settings(load_planner(own.planner(method[1])))
     lengths = {
         key: 10 * value
-        for key, value in own.resolved(method[1]).items()
+        for key, value in own.resolve_settings(method[1]).items()
         if declared[key].about.unit == UNITS
     }
     one, other = (
@@ -88,4 +88,4 @@ def test_no_generation_leaves_the_best_of_the_first(method):
 def test_settings_that_do_not_fit_together_are_named(key, method, changes, fault):
     own = study(key)
     with pytest.raises(ValueError, match=fault):
-        load_planner(own.planner(method)).check(own.resolved(method) | changes)
+        load_planner(own.planner(method)).check(own.resolve_settings(method) | changes)

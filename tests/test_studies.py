@@ -336,7 +336,7 @@ def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
     specs = jobs.build_audit(study, "full").tables
     tables = published("tharwat2018")
-    compared = {name: audit.printed_numbers(study.published_file(name)) for name in specs}
+    compared = {name: audit.printed_numbers(study.find_published_file(name)) for name in specs}
     rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, specs))
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")

@@ -107,9 +107,9 @@ def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(
     )
     file.write_text(text)
     study = reading.load([folder])["song2016"]
-    resolved = study.resolved("smooth")
+    resolved = study.resolve_settings("smooth")
     assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 501, 6)
-    assert study.resolved("shortest_path") == {}
+    assert study.resolve_settings("shortest_path") == {}
 
 
 def test_a_paper_is_cited_alike_by_its_study_and_by_this_software():

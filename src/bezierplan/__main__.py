@@ -18,19 +18,20 @@ from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, suggest_closest
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
-"""How the command was called."""
+"""The words that called the command line."""
 
 COMMANDS = {
     file.stem.replace("_", "-"): file
     for file in sorted((PACKAGE / "commands").glob("[!_]*.py"))
     if file.stem != "arguments"
 }
-"""The file of each command."""
+"""Command -> its file."""
 
 
 def main(words: list[str]) -> None:
-    """Do what the words of a command line say; a fault ends the process with one line: of input
-    with status 2, of a planner with 1.
+    """Run the command that the words of a command line name.
+
+    A fault ends the process with one line: wrong input with status 2, a planner's failure with 1.
     """
     name, *rest = words or ["--help"]
     try:
@@ -72,13 +73,13 @@ def main(words: list[str]) -> None:
 
 
 def _refuse(*lines: str) -> NoReturn:
-    """End with the status of wrong input."""
+    """Print lines and end with the status of wrong input."""
     print(*lines, sep="\n", file=sys.stderr)
     sys.exit(2)
 
 
 def start() -> None:
-    """Do what the words of this process say."""
+    """Run the command line of this process."""
     set_kernel_target()
     try:
         main(sys.argv[1:])

@@ -57,7 +57,7 @@ class Judgement:
     length : float
         Exact arc length, in the map's unit; nan without a path.
     feasible : bool
-        Whether the path stays out of every obstacle and within the border.
+        True if the path stays out of every obstacle and within the border.
     collision : tuple of float or None
         The first point (x, y) of the path at which it enters an obstacle.
     depth : float
@@ -72,7 +72,7 @@ class Judgement:
     curvature_jump : float
         Its largest jump between two pieces of the path; infinite at a corner.
     corners : bool
-        Whether the direction of travel jumps somewhere.
+        True if the direction of travel jumps somewhere.
     shortest : float
         Length of the exact shortest path, through the way points; infinite if there is none.
     shortest_points : ndarray
@@ -102,7 +102,7 @@ class Judgement:
         return self.length / self.shortest - 1 if self.shortest else 0.0
 
     def sample(self, n: int | None = None, *, step: float | None = None) -> samples.Samples:
-        """Points at equal distances along the path, with heading and curvature.
+        """Return points at equal distances along the path, with heading and curvature.
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ class Judgement:
         axes : Axes, optional
             Matplotlib's, by default new ones.
         map : bool
-            Whether the map, its ends and the exact shortest path are drawn as well.
+            Draw the map, its ends and the exact shortest path as well.
         **look
             Properties of the path's line, such as `label` and `color`.
 
@@ -156,7 +156,7 @@ class Judgement:
             message as `ros2 topic pub` reads it (.yaml); or all fields of the answer (.json), in
             which null is what JSON has no number for.
         step : float, optional
-            Of points: as in `sample`, by default a thousandth of the length.
+            Distance of points, as in `sample`; by default a thousandth of the length.
 
         Raises
         ------
@@ -175,7 +175,7 @@ class Judgement:
             drawn_path.save(file, self.plot)
 
     def _repr_html_(self) -> str:
-        """The picture and what the command line prints, for notebooks."""
+        """Return the picture and what the command line prints, for notebooks."""
         return drawn_path.html(answers.rows(self), self.plot)
 
 
@@ -231,8 +231,8 @@ class Comparison:
 
     @property
     def runs(self) -> pd.DataFrame:
-        """The fields of all answers, a row each: method (its label), problem (its name), and the
-        others.
+        """The fields of all answers, one row each, with method (its label) and problem
+        (its name).
         """
         import pandas as pd
 
@@ -246,10 +246,10 @@ class Comparison:
     def table(self) -> pd.DataFrame:
         """A row for each method, the best one first.
 
-        Columns: problems; runs; feasible, the share of runs whose path is free; of these the
-        medians of length, excess (over the exact shortest path, as a share) and curvature; of all
-        runs the medians of evaluations and cpu_s; rank, the mean one on a problem: by the share of
-        free paths, and of equal shares by the excess.
+        Columns: problems, runs, and feasible, the share of runs whose path is free. Length, excess
+        (over the exact shortest path, as a share) and curvature are medians over the free paths;
+        evaluations and cpu_s are medians over all runs. Rank is the mean rank on a problem: by the
+        share of free paths, then by the excess.
         """
         from bezierplan.analysis.numbers import benchmark
 
@@ -277,17 +277,16 @@ class Comparison:
         return axes
 
     def save(self, file: str | File) -> None:
-        """Save what `plot` draws of each problem, at most 12 of them, as a picture (.svg, .png,
-        .pdf).
-        """
+        """Save what `plot` draws, for at most 12 problems, as a picture (.svg, .png, .pdf)."""
         drawn_path.save(File(file), *self._draws().values())
 
     def _draws(self) -> dict[str, partial]:
-        """Return what draws each problem, by name."""
+        """Return problem -> the function that draws it."""
         names = (each.problem.name for own in self.answers.values() for each in own)
         return {name: partial(self._draw, name) for name in names}
 
     def _draw(self, problem: str, axes: Axes | None) -> Axes:
+        """Draw the best path of each method on a problem."""
         looks = style.lines([*self.answers], style.LOOK_OF_PLANNER)
         for number, (label, answered) in enumerate(self.answers.items()):
             own = [each for each in answered if each.problem.name == problem]
@@ -298,7 +297,7 @@ class Comparison:
         return axes
 
     def _repr_html_(self) -> str:
-        """The picture and the table, for notebooks."""
+        """Return the picture and the table, for notebooks."""
         return drawn_path.html(self.table.to_html(float_format="%.4g"), *self._draws().values())
 
 
@@ -321,8 +320,8 @@ def read_map(
         GeoJSON polygons (.geojson, .json); an occupancy map of ROS's map_server (.yaml), or an
         image alone (.png, .pgm, .bmp); or cells as text (.txt).
     cell : float, optional
-        Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that
-        need cells.
+        Side of a cell. Text has cells, by default of side 1. Polygons become a grid, for methods
+        that need cells.
     rule : {"overlap", "centre"}, optional
         Which cells polygons occupy; overlap by default.
     robot_radius : float, optional
@@ -331,12 +330,12 @@ def read_map(
     unit : str, optional
         Name of the unit of length; by default m, of grids cell.
     margin : float, optional
-        Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
+        For GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
     resolution : float, optional
-        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and
-        dark pixels are occupied.
+        For an image alone: side of a pixel, in the map's unit. The lower left corner of the image
+        is at 0, 0, and dark pixels are occupied.
     unknown : {"occupied", "free"}, optional
-        What pixels of a ROS map or an image count as that are unknown; occupied by default.
+        How unknown pixels of a ROS map or an image count; occupied by default.
 
     Returns
     -------
@@ -362,14 +361,16 @@ def read_map(
 
 
 def example_map(name: str) -> File:
-    """The file of a map of the studies, such as ``"gaps"`` or ``"figure2"``. Raises ValueError."""
+    """Return the file of a map of the studies, such as ``"gaps"`` or ``"figure2"``. Raises
+    ValueError.
+    """
     files = {file.stem: file for file in STUDIES.glob("*/workspaces/*.[gt]*")}
     check_known(name, files, "map")
     return files[name]
 
 
 def shortest_path(problem: Problem) -> shortest_paths.Bound:
-    """The exact shortest path of a point from start to target.
+    """Return the exact shortest path of a point from start to target.
 
     Parameters
     ----------
@@ -399,7 +400,7 @@ def shortest_path(problem: Problem) -> shortest_paths.Bound:
 
 
 def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
-    """A problem with its exact shortest path."""
+    """Return a problem on the map for its robot, with its exact shortest path."""
     home = problem_files.place_problem(problem)
     return home, shortest_paths.shortest_path(home)
 
@@ -436,6 +437,7 @@ def check(problem: Problem, path: Path) -> Judgement:
     if not isinstance(path, Path) or not _has_numbers(path.points, len(path.points), 2):
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
+    # The verdict is about the plain copy; the caller gets the path that was given.
     return Judgement(**answers.verdict(*_bound(problem), plain) | {"path": path})
 
 
@@ -456,10 +458,10 @@ def plan(
     method : str, module or callable, optional
         A study's method such as ``"song2016/smooth"``, whose settings are the defaults; a planner
         such as ``"prm"``, with the settings of the first study, by name, that uses it; the path of
-        a planner's file; or a planner's module or its function ``plan``. Without it, the exact
+        a planner's file; or a planner's module or its function ``plan``. By default the exact
         shortest path with rounded corners.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
     robot_radius : float
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if
         the map was read with one.
@@ -467,7 +469,7 @@ def plan(
         Way points (x, y), in their order: the path joins paths from one to the next, with a corner
         where their directions differ. For the planner without a method and `shortest_path`.
     **settings
-        Settings in place of the method's own. Without a method: `turning_radius`, the smallest
+        Settings in place of the method's own. If no method is given: `turning_radius`, the smallest
         radius that turns should have, and `excess`, the share by which the path may be longer than
         the shortest. With neither, turns are as wide as a path at most 1 % longer allows.
 
@@ -478,8 +480,8 @@ def plan(
     Raises
     ------
     ValueError
-        Names the argument or the setting and what is expected: an unknown method, a wrong setting,
-        a start in an obstacle, a map that the planner does not serve.
+        For an unknown method, a wrong setting, a start in an obstacle, or a map that the planner
+        does not serve; names the argument or the setting and what is expected.
     TypeError
         For a problem that is no `Problem`, or a method that is none of the above.
 
@@ -528,9 +530,9 @@ def compare(
     Raises
     ------
     ValueError
-        As `plan` does.
+        For the same faults as in `plan`.
     TypeError
-        As `plan` does.
+        For the same faults as in `plan`.
 
     Examples
     --------
@@ -565,8 +567,8 @@ def _answer(
     via: Sequence[tuple[float, float]] = (),
     settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> list[Answer]:
-    """Return the answers of a method to problems, with `repeats` seeds in a row for each of these,
-    if it draws random numbers.
+    """Return the answers of a method to problems: `repeats` for each, with seeds in a row, or one
+    if the method draws no random numbers.
 
     Raises ValueError and TypeError as `plan` does.
     """
@@ -584,6 +586,7 @@ def _answer(
     if places and planner not in planning.CHAINED:
         raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {label}")
     settings = preset | {
+        # numpy's numbers become Python's, which the types of settings accept.
         name: each.item() if isinstance(each, np.generic) else each
         for name, each in settings.items()
     }
@@ -596,12 +599,14 @@ def _answer(
         legs = planning.split_into_legs(home, places)
         which = f"method: {label}" + f": {problem.name}" * (len(problems) > 1)
         run = planning.Run(which, home, legs, planning.find_shortest(legs), settings, int(seed))
+        # Without random numbers, all repeats would be equal.
         again = 1 if getattr(module, "deterministic", False) else int(repeats)
         runs += [run._replace(seed=run.seed + number) for number in range(again)]
     answered: list[Answer] = []
     try:
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
             judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
+            # This checks our own geometry, not the planner.
             if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
                 raise ValueError(
                     f"its path is {judged['length']:.12g} long and feasible, but no free path is "
@@ -640,7 +645,7 @@ def plan_all(
     Raises
     ------
     ValueError
-        For a column that is missing; as `plan` does, with the row of the file, from 1.
+        For a missing column, and for the faults of `plan`, with the row of the file, from 1.
     """
     import pandas as pd
 
@@ -657,7 +662,9 @@ def plan_all(
 
 
 def _check_problem(problem: Problem) -> None:
-    """Raise TypeError for what is no problem, and ValueError for places that are none."""
+    """Raise TypeError for anything but a problem on a map, and ValueError for ends without two
+    numbers.
+    """
     if not isinstance(problem, Problem) or not isinstance(problem.workspace, Workspace):
         raise TypeError(f"problem: {problem!r:.80}; expected a Problem on a map")
     check_map(problem.workspace)
@@ -668,6 +675,7 @@ def _check_problem(problem: Problem) -> None:
 
 
 def _has_numbers(values: Any, *shape: int) -> bool:
+    """Return whether values are numbers in an array of a shape."""
     array = np.asarray(values)
     return array.dtype.kind in "fiu" and array.shape == shape
 
@@ -680,8 +688,8 @@ def _name(method: Method | None) -> str:
 
 
 def _find_planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
-    """Return, of a method, its planner as a name of this package or a file (empty for others), the
-    planner's module, and settings.
+    """Return the planner of a method (a name of this package or a file, otherwise empty), the
+    planner's module, and the method's settings.
     """
     if method is None or method == planning.ROUNDED:
         return planning.ROUNDED, load_planner(planning.ROUNDED), {}
@@ -690,6 +698,7 @@ def _find_planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
         return planner, interface.load_planner_module(planner, f"method: {method}"), preset
     module = method
     if not isinstance(method, ModuleType):
+        # A function alone gets a module, because checks read a planner's traits from one.
         module = ModuleType("planner_of_a_program")
         module.plan = method
     if fault := interface.find_interface_fault(module):
@@ -698,8 +707,8 @@ def _find_planner(method: Method | None) -> tuple[str, Any, dict[str, Any]]:
 
 
 def find_method(method: str) -> tuple[str, dict[str, Any]]:
-    """The planner of a method, as a name of this package or a file, and its settings: those of its
-    study, or of the first study that uses a planner.
+    """Return the planner of a method, as a name of this package or a file, and its settings. The
+    settings of a planner are those in the first study that uses it.
 
     method: ``STUDY/METHOD``, where STUDY is one of this project or a folder; a planner's name or
     file. Raises ValueError.
@@ -717,23 +726,24 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
     ):
         known = [*_list_planners(), *list_planners()]
         raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
-    return _read_study(key).planner(name), _read_study(key).resolved(name)
+    return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
 
 def _find_folder(key: str) -> File:
-    """That of a study of this project, or any other."""
+    """Return the folder of a study of this project, or any other folder."""
     return STUDIES / key if key in _list_keys() else File(key)
 
 
 @cache
 def _read_study(key: str) -> Any:
-    """The experiments of a study of this project, or of a folder."""
+    """Read the experiments of a study of this project, or of a folder; once in a process."""
     from bezierplan.study import experiments
 
     return experiments.read(_find_folder(key))
 
 
 def _list_keys() -> list[str]:
+    """Return the names of this project's studies."""
     return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
 
 
@@ -754,13 +764,13 @@ def check_settings(name: str, module: Any, settings: Mapping[str, Any], problem:
 
 
 def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
-    """Return the methods that the papers propose: ``"study/method"`` -> the kinds of map that it
+    """Return the methods that the papers propose: ``"study/method"`` -> the kinds of map that each
     serves.
 
     Parameters
     ----------
     all : bool
-        Whether to return all methods of the studies: rivals, variants and baselines as well.
+        Return all methods of the studies: rivals, variants and baselines as well.
 
     Examples
     --------
@@ -777,7 +787,7 @@ def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
 
 
 def _list_planners() -> dict[str, str]:
-    """Return the planners of all methods of the project's studies, by ``"study/method"``."""
+    """Return ``"study/method"`` -> its planner, for the methods of the project's studies."""
     return {
         f"{key}/{name}": _read_study(key).planner(name)
         for key in _list_keys()
@@ -786,7 +796,7 @@ def _list_planners() -> dict[str, str]:
 
 
 def problems(experiment: str) -> dict[str, Problem]:
-    """The problems of an experiment of the project's studies, by name.
+    """Return the problems of an experiment of the project's studies, by name.
 
     Parameters
     ----------
@@ -812,7 +822,8 @@ def problems(experiment: str) -> dict[str, Problem]:
 
 
 def results(folder: str | File, experiment: str) -> pd.DataFrame:
-    """The runs of an experiment as one table, with the bounds of their problems and their times.
+    """Return the runs of an experiment as one table, with the bounds of their problems and their
+    times.
 
     Parameters
     ----------
@@ -865,7 +876,7 @@ def replay(run: str) -> Answer:
 
 
 def answer_of(rerun: Any, run: str) -> Answer:
-    """The answer in the results of one run, by its name."""
+    """Return the answer in the results of one run, by its name."""
     return Answer(**answers.of_run(rerun, run))
 
 

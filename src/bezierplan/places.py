@@ -1,4 +1,4 @@
-"""Where things lie: this package, the tree of studies and workflow, the folder of caches."""
+"""Locations: this package, the tree of studies and workflow, and the folder of caches."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).parent
 """The folder of this package."""
 
 CHECKOUT = PACKAGE.parent.name == "src" and (PACKAGE.parents[1] / "config" / "studies").is_dir()
-"""Whether this package runs from a clone; an installed one holds a copy of the tree."""
+"""True if this package runs from a clone; an installed one holds a copy of the tree."""
 
 TREE = PACKAGE.parents[1] if CHECKOUT else PACKAGE / "tree"
 """The folder with `config`, `workflow`, `profiles` and `docs/outcome`."""
@@ -19,13 +19,13 @@ STUDIES = TREE / "config" / "studies"
 """The studies of this project."""
 
 EXTRA = frozenset(("jinja2", "pyarrow", "seaborn", "snakemake"))
-"""Libraries of the extra `workflow`: those that run whole studies."""
+"""Libraries of the extra `workflow`, which run whole studies."""
 
 
 @contextmanager
 def require_extra() -> Iterator[None]:
-    """A block that imports what may need a library of the extra `workflow`. Raises
-    ModuleNotFoundError that says how to install it.
+    """Guard a block that imports libraries of the extra `workflow`. Raises ModuleNotFoundError that
+    says how to install them.
     """
     try:
         yield
@@ -40,34 +40,35 @@ def require_extra() -> Iterator[None]:
 
 
 def find_cache_folder() -> Path:
-    """The folder of what can be made again: `.cache` in a clone that can be written, and of an
-    installed package the user's own.
+    """Return the folder for what can be made again: `.cache` in a clone that can be written,
+    otherwise the user's cache.
     """
     return TREE / ".cache" if CHECKOUT and os.access(TREE, os.W_OK) else find_user_cache_folder()
 
 
 def find_user_cache_folder() -> Path:
-    """The folder that the platform names for a user's caches."""
+    """Return the folder that the platform names for a user's caches."""
     usual = "Library/Caches" if sys.platform == "darwin" else ".cache"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / usual) / "bezierplan"
 
 
 def set_kernel_target() -> None:
-    """Let this process, and those that it starts, compile kernels for all processors of a kind
-    instead of its own, so that machines share them. numba reads this when it is imported.
+    """Let this process and those that it starts compile kernels for a whole family of processors
+    instead of its own, so that machines share them.
     """
     flags = Path("/proc/cpuinfo")
     words = flags.read_text(encoding="utf-8").split() if flags.is_file() else []
     named = (
         "x86-64-v3" if {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words} else "generic"
     )
+    # numba reads this when it is imported.
     os.environ.setdefault("NUMBA_CPU_NAME", named)
     os.environ.setdefault("NUMBA_CPU_FEATURES", "")
 
 
 def shorten_path(path: Path) -> str:
-    """A path relative to the working folder if it lies inside, so that a moved tree still finds its
-    results; otherwise unchanged.
+    """Return a path relative to the working folder if it lies inside, so that a moved tree still
+    finds its results; otherwise unchanged.
     """
     here = os.path.relpath(path)
     return str(path) if here.startswith("..") else here

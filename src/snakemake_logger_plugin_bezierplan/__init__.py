@@ -1,6 +1,6 @@
-"""Output of Snakemake while it works: in a terminal the rich logger's progress bars, without one a
-line every 15 seconds or less often. At the end: what was made, where it is, and the time taken; or
-why jobs failed, a line for each fault.
+"""Output of Snakemake while it works: in a terminal the rich logger's progress bars, otherwise a
+line at most every 15 seconds. At the end: what was made, where it is, and the time taken; or why
+jobs failed, a line for each fault.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
 one.
@@ -18,7 +18,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 from snakemake_logger_plugin_rich import LogHandler as RichHandler
 
 REASON = "CRITICAL "
-"""What comes, in a job's log, before the line that says why the job failed
+"""Beginning of the line in a job's log that says why the job failed
 (`bezierplan.running.jobs.log`).
 """
 LOCKED = (
@@ -27,16 +27,18 @@ LOCKED = (
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
 NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
-"""How messages begin that tell a user nothing."""
+"""Beginnings of messages that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
 MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
-"""What is counted at the end, by the end of a file of it."""
+"""What is counted at the end -> the end of its file's name."""
 BETWEEN_LINES = 15.0
-"""Least time between two lines of progress without a terminal, in seconds."""
+"""Least seconds between two lines of progress without a terminal."""
 
 
 class LogHandler(RichHandler):
+    """The rich logger, with fewer and clearer lines."""
+
     def __post_init__(self) -> None:
         super().__post_init__()
         self.progress.columns += (MofNCompleteColumn(), TimeRemainingColumn())
@@ -50,14 +52,15 @@ class LogHandler(RichHandler):
         self.reasons: dict[int | None, str] = {}
 
     def emit(self, record: LogRecord) -> None:
+        """Show a record of Snakemake, keep it as a reason why a job failed, or drop it."""
         event, message = getattr(record, "event", None), record.getMessage()
         job = getattr(record, "jobid", None) if event == LogEvent.JOB_ERROR else None
         fault = getattr(record, "exception", None) if event == LogEvent.ERROR else None
         reason = LOCKED.format(Path.cwd()) if fault == "LockException" else ""
         if fault == "MissingRuleException":
-            reason = unknown_target(message)
+            reason = describe_unknown_target(message)
         elif event == LogEvent.JOB_ERROR:
-            reason = self.reason_of(job)
+            reason = self.find_reason(job)
             # If it is tried again, it is not another job.
             if info := self.event_handler.jobs_info.get(job):
                 self.event_handler.rule_counts[info["rule"]]["started"] -= 1
@@ -69,7 +72,7 @@ class LogHandler(RichHandler):
             return
         done = self.event_handler.completed == self.event_handler.total_jobs
         if "Complete log" in message and done:
-            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
+            self.say(*list_last_lines(self.outputs, time.monotonic() - self.started))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -82,11 +85,14 @@ class LogHandler(RichHandler):
                 self.show_progress()
 
     def say(self, *lines: str) -> None:
+        """Print lines without wrapping or colours."""
         for line in lines:
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
-    def reason_of(self, job: int) -> str:
-        """Why a job failed, as the last lines of its log say; if they do not, where the log is."""
+    def find_reason(self, job: int) -> str:
+        """Return why a job failed, from the last lines of its log; if these do not say it, where
+        the log is.
+        """
         logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
         for log in map(Path, logs):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
@@ -102,19 +108,23 @@ class LogHandler(RichHandler):
         self.reasons.clear()
 
     def show_progress(self) -> None:
-        """Print a line, unless the last one is too fresh."""
+        """Print a line of progress, unless the last one is too recent."""
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
             self.last_line, taken = now, now - self.started
             share = 100 * done // total
             # The first jobs say little of the others.
-            left = f", about {in_hours(taken * (total / done - 1))} left" * (5 <= share < 100)
-            self.say(f"{share} %: {done} of {total} jobs, {in_hours(taken)} elapsed{left}")
+            left = f", about {format_duration(taken * (total / done - 1))} left" * (
+                5 <= share < 100
+            )
+            self.say(f"{share} %: {done} of {total} jobs, {format_duration(taken)} elapsed{left}")
 
 
-def last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """What was made, where the results are, how long it took, and last the page."""
+def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
+    """Return the lines at the end: what was made, where the results are, the time, and last the
+    page.
+    """
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
     made = [
@@ -123,7 +133,7 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
         if (count := sum(file.name.endswith(ending) for file in outputs))
     ]
     lines = [f"Made: {', '.join(made)}"] if made else []
-    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {format_duration(seconds)}"]
     figures = sorted(file for file in outputs if file.suffix == ".svg")
     lines += [f"Figure: {figures[0]}"] if len(figures) == 1 else []
     for page in sorted(file for file in outputs if file.name == "index.html"):
@@ -133,14 +143,16 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
     return lines if folders else []
 
 
-def unknown_target(message: str) -> str:
-    """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
+def describe_unknown_target(message: str) -> str:
+    """Return the message about a target that no rule makes, from Snakemake's own; empty for another
+    one.
+    """
     from bezierplan.schema.checked import suggest_closest
 
     match = re.search(r"No rule to produce (\S+)", message)
     return f"{match[1]}: no target{suggest_closest(match[1], KNOWN)}" if match and KNOWN else ""
 
 
-def in_hours(seconds: float) -> str:
-    """A time as h:mm:ss."""
+def format_duration(seconds: float) -> str:
+    """Return seconds as h:mm:ss."""
     return str(timedelta(seconds=round(seconds)))

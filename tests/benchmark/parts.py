@@ -137,7 +137,7 @@ def _study(methods: int, runs: int, *options: str) -> None:
     """
     own = frame.study("tharwat2018")
     names = [f"method{number}" for number in range(methods)]
-    settings = own.resolved("pso")
+    settings = own.resolve_settings("pso")
     repeats = max(runs // 5, 1)
     scales = ("smoke", "full", "extended")
     content = {

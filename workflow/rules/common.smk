@@ -139,7 +139,7 @@ def files_in(scale, folder, study=None):
         file
         for own in OF_SCALE[scale].values()
         if study in (None, own.key)
-        for name in own.named(folder)
+        for name in own.list_names(folder)
         for file in files_of(scale, own, name)
     ]
 
@@ -153,13 +153,14 @@ def files_of(scale, study, name):
     return [f"results/{scale}/{study.key}/{file}" for file in study.files_of(name)]
 
 
-PRINTED = {key: in_trees(study.with_published()) for key, study in STUDIES.items()}
+PRINTED = {key: in_trees(study.find_published_tables()) for key, study in STUDIES.items()}
 UNPRINTED = {
-    key: in_trees(study.compared().keys() - study.with_published().keys())
+    key: in_trees(study.find_tables_of_runs().keys() - study.find_published_tables().keys())
     for key, study in STUDIES.items()
 }
 LISTED = {
-    key: in_trees(study.tables.keys() - study.compared().keys()) for key, study in STUDIES.items()
+    key: in_trees(study.tables.keys() - study.find_tables_of_runs().keys())
+    for key, study in STUDIES.items()
 }
 DRAWN = {key: in_trees(study.figures) for key, study in STUDIES.items()}
 
@@ -275,7 +276,7 @@ def compared(scale, ending):
     return [
         f"results/{scale}/{key}/{choose_tree(name)}/{name}.{ending}.csv"
         for key, study in OF_SCALE[scale].items()
-        for name in study.with_published()
+        for name in study.find_published_tables()
     ]
 
 

@@ -81,7 +81,7 @@ rule latex:
         table=f"{RESULTS}/{{tree}}/{{table}}.csv",
         beside=lambda wildcards: (
             [f"{RESULTS}/{{tree}}/{{table}}.comparison.csv"]
-            if wildcards.table in STUDIES[wildcards.study].with_published()
+            if wildcards.table in STUDIES[wildcards.study].find_published_tables()
             else []
         ),
     output:

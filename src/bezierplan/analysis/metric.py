@@ -84,7 +84,7 @@ class Metrics(dict[str, Metric]):
 
 
 METRICS = Metrics()
-COLUMNS = columns.declared(
+COLUMNS = columns.read_columns(
     *(table for own in columns.TABLES.values() for table in (*own.every, own.drives))
 )
 ALL_STUDIES: set[str] = set()

@@ -1,8 +1,8 @@
 """The commands of `python -m bezierplan`, one file each.
 
-The function `main` of a command is the declaration of its arguments: a parameter without a default
-is a word, one with a default an option, and its docstring explains them. `PASSES_ON` of a command
-holds functions of the interface whose options are the command's as well.
+The function `main` of a command declares its arguments: a parameter without a default is a word,
+one with a default an option, and the docstring explains them. `PASSES_ON` of a command lists
+functions of the interface whose options are the command's as well.
 """
 
 import os
@@ -14,29 +14,35 @@ from bezierplan.schema import checked
 
 
 def count_cores() -> int:
-    """How many cores this process may use, all of this machine where that is not known."""
+    """Return how many cores this process may use; all of this machine where that is not known."""
+    # A container or a batch system may allow fewer cores than the machine has.
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def read_config() -> dict[str, Any]:
-    """The configuration in config/config.yaml: of the working folder, or of the project."""
+    """Read the configuration in config/config.yaml of the working folder, otherwise of the
+    project.
+    """
     from bezierplan.study import reading
 
     return checked.read(reading.find_config_file())
 
 
 def is_study(word: str) -> bool:
-    """Whether a word is the folder of a study."""
+    """Return whether a word is the folder of a study."""
     return Path(word, "experiments.yaml").is_file()
 
 
 def find_study_path(word: str) -> str:
-    """The path of a study's folder; any other word as it is."""
+    """Return the path of a study's folder, or any other word as it is."""
+    # An absolute path, because a word without a slash names a study of the project.
     return str(Path(word).resolve()) if is_study(word) else word
 
 
 def read_studies(names: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the studies of some names or folders, or of the configuration. Raises Fault."""
+    """Return the studies of some names or folders, otherwise those of the configuration. Raises
+    Fault.
+    """
     from bezierplan.study import reading
 
     config = {"studies": [*map(find_study_path, names)]} if names else read_config()

@@ -1,4 +1,4 @@
-"""Arguments of a command from the signatures and docstrings of functions."""
+"""Make a command's arguments from the signatures and docstrings of functions."""
 
 import inspect
 import re
@@ -17,7 +17,7 @@ class Parser(ArgumentParser):
     """A parser that says what is wrong in one line, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        """End the process with status 2."""
+        """End the process with status 2, after one line."""
         message = message.removeprefix("argument ")
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` shows what is expected\n")
 
@@ -28,10 +28,11 @@ def call(
     functions: Sequence[Callable[..., Any]],
     words: Sequence[str],
 ) -> None:
-    """Call a command's function with the words of a command line, and with options that it passes
-    on to other functions; what the words leave out stays away.
+    """Call a command's function with the words of a command line.
 
-    Raises ValueError as these do; if its message begins with the name of an option, with dashes.
+    program: how the command is called. functions: further functions to which the command passes
+    options on. Options that the words leave out are not passed. Raises ValueError as the functions
+    do; if its message begins with the name of an option, this gets its dashes.
     """
     sections = _split_sections(main)
     parser = Parser(
@@ -39,6 +40,7 @@ def call(
         description=sections[""],
         epilog=f"examples:\n{sections.get('Examples', 'none')}",
         formatter_class=RawDescriptionHelpFormatter,
+        # Options that are left out keep the functions' own defaults.
         argument_default=SUPPRESS,
     )
     options: dict[str, str] = {}
@@ -65,13 +67,13 @@ def call(
 
 
 def _split_sections(function: Callable[..., Any]) -> dict[str, str]:
-    """The sections of a docstring by their headings, the first without one."""
+    """Return the sections of a docstring by heading; the first has an empty one."""
     parts = re.split(r"\n\n(\w+)\n-+\n", f"{inspect.getdoc(function)}")
     return dict(zip(["", *parts[1::2]], parts[::2]))
 
 
 def read_parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str]]:
-    """The parameters of a function, with the text of its docstring."""
+    """Yield the parameters of a function, each with its text in the docstring."""
     section = _split_sections(function).get("Parameters", "")
     texts = dict(re.findall(r"^\**(\w+).*\n((?: {4}.*\n?)+)", section, re.MULTILINE))
     for name, parameter in inspect.signature(function, eval_str=True).parameters.items():
@@ -79,7 +81,9 @@ def read_parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Para
 
 
 def _add(parser: ArgumentParser, parameter: inspect.Parameter, word: bool, text: str) -> str:
-    """Add an argument, and return its option; of a word nothing, and of several words a star."""
+    """Add an argument to a parser. Return its option, a star for several words, or an empty text
+    for one word.
+    """
     annotation = Settings if parameter.kind is parameter.VAR_KEYWORD else parameter.annotation
     read = next(each for each in (annotation, *get_args(annotation), str) if each in READS)
     options: dict[str, Any] = {"help": text.replace("%", "%%")}
@@ -93,13 +97,14 @@ def _add(parser: ArgumentParser, parameter: inspect.Parameter, word: bool, text:
         return star
     if get_origin(annotation) is Sequence:
         options["action"] = "append"
+    # An underscore at the end keeps a parameter apart from Python's own words, such as `from_`.
     option = f"--{parameter.name.rstrip('_').replace('_', '-')}"
     parser.add_argument(option, dest=parameter.name, **options)
     return option
 
 
-def _place(text: str) -> Place:
-    """x and y from words such as `2.5,10`."""
+def _read_place(text: str) -> Place:
+    """Return x and y from a word such as `2.5,10`."""
     try:
         x, y = map(float, text.split(","))
     except ValueError:
@@ -108,6 +113,7 @@ def _place(text: str) -> Place:
 
 
 def _read_settings(text: str) -> Settings:
+    """Return settings from a word in YAML."""
     settings = checked.parse(text, "--settings")
     if not isinstance(settings, dict):
         raise ArgumentTypeError(f"{text}: expected '{{name: value, ...}}'")
@@ -115,7 +121,7 @@ def _read_settings(text: str) -> Settings:
 
 
 READS: dict[Any, tuple[Callable[[str], Any], str]] = {
-    Place: (_place, "X,Y"),
+    Place: (_read_place, "X,Y"),
     Settings: (_read_settings, "'{NAME: VALUE, ...}'"),
     bool: (bool, ""),
     int: (int, "N"),
@@ -123,4 +129,4 @@ READS: dict[Any, tuple[Callable[[str], Any], str]] = {
     Path: (Path, "FILE"),
     str: (str, "NAME"),
 }
-"""Type of a parameter -> what reads it from a word, and how the help calls that."""
+"""Type of a parameter -> the function that reads it from a word, and its name in the help."""

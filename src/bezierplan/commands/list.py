@@ -52,7 +52,7 @@ def main(*words: str) -> None:
 
 
 def _load_metrics(studies: Iterable[Study]) -> None:
-    """Load the metrics of studies, and name the columns that only their planners have."""
+    """Load the metrics of studies, and register the columns that only their planners have."""
     from bezierplan.analysis import study_code
 
     for study in studies:
@@ -62,8 +62,8 @@ def _load_metrics(studies: Iterable[Study]) -> None:
 
 
 def list_things(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tuple[str, Rows]]:
-    """Headings, each with names and a line on each: of kinds of `NAMES`, then of each study those
-    of `KINDS`.
+    """Yield headings, each with rows of a name and a line about it: first the kinds of `NAMES`,
+    then for each study those of `KINDS`.
     """
     yield from ((kind, sorted(NAMES[kind]())) for kind in names if kind in NAMES)
     for study in studies:
@@ -73,10 +73,12 @@ def list_things(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tupl
 
 
 def _list_titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
+    """Return the full name and the title of each table or figure, in the order of print."""
     return ((f"{study.key}_{name}", artefacts[name].title) for name in in_printed_order(artefacts))
 
 
 def _list_methods(study: Study) -> Rows:
+    """Yield each method with its planner and settings."""
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
@@ -86,18 +88,20 @@ def _list_methods(study: Study) -> Rows:
 
 
 def _list_settings(study: Study) -> Rows:
+    """Yield each setting of the planners of a study."""
     for planner in dict.fromkeys(map(study.planner, study.methods)):
         for name, declared in read_settings(load_planner(planner)).items():
             yield f"{planner}: {name}", f"{declared}; {declared.meaning}"
 
 
 def _read_sentence(thing: Any) -> str:
-    """The first paragraph about a module, or about that of a model, on one line."""
+    """Return the first paragraph about a module, or about a model's module, on one line."""
     module = inspect.getmodule(thing) if isinstance(thing, type) else thing
     return " ".join((inspect.getdoc(module) or "").partition("\n\n")[0].split())
 
 
 def _read_sentences(things: Mapping[str, Any]) -> Rows:
+    """Return name -> the first paragraph about it."""
     return ((name, _read_sentence(each)) for name, each in things.items())
 
 
@@ -112,7 +116,7 @@ KINDS: dict[str, Callable[[Study], Rows]] = {
     "claims": lambda study: ((claim.id, claim.statement) for claim in study.claims),
     "settings": _list_settings,
 }
-"""What a study has, by kind."""
+"""Kind -> what a study has of it."""
 
 NAMES: dict[str, Callable[[], Rows]] = {
     "metrics": lambda: (
@@ -123,4 +127,4 @@ NAMES: dict[str, Callable[[], Rows]] = {
     "worlds": lambda: _read_sentences(workspace_kinds.kinds()),
     "planners": lambda: _read_sentences({name: load_planner(name) for name in list_planners()}),
 }
-"""What the files of a study can name, by kind."""
+"""Kind -> the names that the files of a study can use."""

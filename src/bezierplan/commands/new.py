@@ -56,6 +56,7 @@ def main(
         raise Fault("expected --from, --start and --target together: a map of your own")
     if from_:
         workspace = describe(from_, cells=True)
+        # A map that cannot be read must not leave half a study behind.
         files.load(workspace, from_.parent)
     shutil.copytree(
         EXAMPLE if example and not from_ else TEMPLATE,
@@ -79,10 +80,11 @@ def _find_call() -> str:
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:
-    """Put a map in the place of the room. The published number is about the room, so it goes."""
+    """Put a map in place of the template's room."""
     for source in sources:
         shutil.copyfile(source, folder / source.name)
     (folder / "room.txt").unlink()
+    # The published number is about the room.
     shutil.rmtree(folder / "published")
     _replace(folder / "artefacts.yaml", "    published: lengths.csv\n", "")
     experiments = folder / "experiments.yaml"
@@ -93,10 +95,11 @@ def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, lis
 
 
 def _replace(file: Path, old: str, new: str) -> None:
-    """Put a text in the place of what a regular expression finds in a file."""
+    """Replace what a regular expression finds in a file."""
     text = re.sub(old, lambda _: new, file.read_text(encoding="utf-8"), flags=re.MULTILINE)
     file.write_text(text, encoding="utf-8")
 
 
 def _write_flow(mapping: dict) -> str:
+    """Return a mapping as one line of YAML."""
     return yaml.safe_dump(mapping, default_flow_style=True, sort_keys=False, width=1000)

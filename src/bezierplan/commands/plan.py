@@ -14,7 +14,8 @@ from bezierplan.schema.checked import Fault
 
 PASSES_ON = (api.read_map, api.plan)
 FILES = (".svg", ".png", ".json", *path_files.WRITERS)
-# The most CPU seconds of a planner that is called again, since the first call loads its kernels.
+# A planner that takes at most so many CPU seconds is called again, because the first call loads its
+# kernels and would be timed with that.
 _LONG = 2.0
 
 
@@ -90,14 +91,14 @@ def main(
 
 
 def _fail(message: str) -> NoReturn:
-    """End with status 1: the words are right, and there is no path."""
+    """End with status 1: the input is right, but there is no path."""
     print(message, file=sys.stderr)
     sys.exit(1)
 
 
 def _check_out(out: Path, map: Path) -> None:
-    """Raise Fault for a file that cannot be written, before planning, which may take long, or that
-    the map consists of.
+    """Raise Fault for a file that cannot be written, or that belongs to the map. This comes before
+    planning, which may take long.
     """
     if out.suffix not in FILES:
         raise Fault(f"out: {out}; expected a file that ends in {', '.join(FILES)}")

@@ -14,12 +14,13 @@ from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.study.replays import replay
 
 MOMENTS = (0.1, 0.4, 0.7, 1.0)
-"""Those at which a drive is drawn, as shares of its time."""
+"""Moments at which a drive is drawn, as shares of its time."""
 
 
 def main(run: str, *, studies: Sequence[str] = ()) -> None:
-    """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
-    results/replay; of a drive, that of some moments. Status 1 if it differs from the stored one.
+    """Rerun a run of a study, print its outcome and whether it equals the stored run, and save its
+    picture below results/replay (of a drive, at some moments). Ends with status 1 if it differs
+    from the stored run.
 
     Parameters
     ----------

@@ -22,8 +22,8 @@ from bezierplan.schema.model import convert_to_list
 def main(*words: str) -> None:
     """Run targets of the workflow; results are written below the working folder, into results/.
 
-    Without a target it makes the tables and figures of papers, or all of a study without numbered
-    ones, at scale full, with claims and the page; STUDY_beyond makes the rest. Ends with
+    If no target is given, it makes the tables and figures of papers, or all of a study without
+    numbered ones, at scale full, with claims and the page; STUDY_beyond makes the rest. Ends with
     Snakemake's status.
 
     Parameters
@@ -48,17 +48,18 @@ def main(*words: str) -> None:
     try:
         sys.exit(workflow.wait())
     except KeyboardInterrupt:
-        # As a terminal does, to the workflow and its jobs.
+        # The workflow and its jobs are a group of their own, which a terminal's Ctrl-C does not
+        # reach.
         os.killpg(workflow.pid, signal.SIGINT)
         workflow.wait()
         raise
 
 
 def build_command(words: Sequence[str]) -> list[str]:
-    """The command that runs words."""
+    """Return the command line of Snakemake for the words of this command."""
     snakemake = [sys.executable, "-m", "snakemake"]
     if not any(word.startswith("--workflow-profile") for word in words):
-        # Of a profile, Snakemake would tell each time that it uses it.
+        # Snakemake would print a line about a profile each time.
         profile = checked.read(TREE / "profiles" / "default" / "profile.yaml")
         snakemake += ["--workflow-profile", "none"]
         for name, value in profile.items():

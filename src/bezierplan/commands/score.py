@@ -24,7 +24,7 @@ def main(
     plot: Path | None = None,
 ) -> None:
     """Print a row for each method: runs, share of feasible ones, excess over the exact shortest
-    path, evaluations, and the mean rank on a problem. Those of the papers are not run again.
+    path, evaluations, and the mean rank on a problem. The methods of the papers are not run again.
 
     Parameters
     ----------
@@ -72,8 +72,8 @@ def main(
 
 
 def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
-    """Return the paths of a csv file, judged. Raises ValueError for one that does not join the ends
-    of its problem.
+    """Judge the paths of a csv file. Raises ValueError for one that does not join the ends of its
+    problem.
     """
     answers_read = []
     for name, path, evaluations in benchmark.read_paths(file, problems):

@@ -14,7 +14,7 @@ from bezierplan.running import recheck
 from bezierplan.study import reading, stored
 from bezierplan.study.jobs import Studies
 
-# Jobs whose files do not follow from others, or take minutes.
+# These jobs are not made again as a whole: their files do not follow from others, or take minutes.
 _KEPT = (Runs, Recheck, Verification)
 
 
@@ -25,8 +25,8 @@ def main(
     cores: int = count_cores(),
     all_: bool = False,
 ) -> None:
-    """Print a line for each file that differs from what is made again, what was checked, and the
-    answer: `made by this code`, `made by other code or libraries`, or `differs`.
+    """Print a line for each file that differs from what is made again, then what was checked, and
+    the answer: `made by this code`, `made by other code or libraries`, or `differs`.
 
     Runs are judged again; the first run of each file and one in a hundred, bounds and all files
     that follow from runs are made again. Ends with status 1 if anything differs, or nothing makes a
@@ -67,6 +67,7 @@ def main(
     files, others = proof.differing(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
+        # One line for each file: its first fault.
         wrong.setdefault(fault.file, fault)
     left, versions = stored.find_strangers(folder, makers), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
@@ -95,7 +96,7 @@ def main(
 
 
 def _find_changes(job: Job | None, account: Mapping[str, str]) -> set[str]:
-    """Return what of the account of a listed file is not that of its job."""
+    """Return the names in which a listed file's account differs from that of its job now."""
     now = job.account | opened.hash_contents(account) if job else {}
     return {name for name in account.keys() | now if account.get(name) != now.get(name)}
 
@@ -103,8 +104,9 @@ def _find_changes(job: Job | None, account: Mapping[str, str]) -> set[str]:
 def _list_tasks(
     at: Studies, makers: Mapping[str, Job], changes: Mapping[str, set[str]], folder: Path
 ) -> list[recheck.StoredRuns]:
-    """Return the runs of each method in an experiment of which there are some. at: the study at
-    each place of results.
+    """Return the stored runs to check, for each method of an experiment that has any.
+
+    at: place of results -> study.
     """
     tasks: dict[Path, recheck.StoredRuns] = {}
     for name, job in makers.items():

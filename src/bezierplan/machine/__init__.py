@@ -1,1 +1,1 @@
-"""What compiled kernels and jobs depend on, and where kernels lie."""
+"""Digests of the code that kernels and jobs depend on, and the place of compiled kernels."""

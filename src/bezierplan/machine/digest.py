@@ -46,24 +46,24 @@ COMPUTING = {
 
 
 class _Module(NamedTuple):
-    """A module by its dotted name, and the folder in which it is looked up: ours or another."""
+    """A module: its dotted name, and the folder in which it is looked up, ours or another."""
 
     home: Path
     name: str
 
     def file(self) -> Path | None:
-        """The module's source file, or None."""
+        """Return the module's source file, or None."""
         return _find_file(self.home, self.name)
 
     def parents(self) -> set["_Module"]:
-        """The packages that contain the module."""
+        """Return the packages that contain the module."""
         parts = self.name.split(".")
         return {_Module(self.home, ".".join(parts[:n])) for n in range(1, len(parts))}
 
 
 @cache
 def _find_file(home: Path, name: str) -> Path | None:
-    """The source file of a module, by its dotted name in a folder, or None."""
+    """Return the source file of a module, by its dotted name in a folder, or None."""
     place = home.joinpath(*name.split("."))
     # A file outside the package may have dots in its name.
     places = (place.with_suffix(".py"), place / "__init__.py", home / f"{name}.py")
@@ -71,7 +71,7 @@ def _find_file(home: Path, name: str) -> Path | None:
 
 
 def _read_module(name: str) -> _Module:
-    """A module from an argument of `compute_source_digest`."""
+    """Return the module that an argument of `compute_source_digest` names."""
     if name.endswith(".py"):
         file = Path(name).resolve()
         return _Module(file.parent, file.stem)
@@ -84,8 +84,8 @@ def name_module(planner: str) -> str:
 
 
 class _Syntax(NamedTuple):
-    """What a file computes: the digest of its syntax tree without docstrings; what it imports:
-    (leading dots, module, name in it); and its docstring.
+    """The syntax of a file: the digest of its tree without docstrings; its imports, each as leading
+    dots, module and name in it; and its docstring.
     """
 
     tree: str
@@ -95,18 +95,18 @@ class _Syntax(NamedTuple):
 
 @cache
 def _parse_file(file: Path) -> _Syntax:
-    """Return the syntax of a file, kept from earlier processes: parsing takes as long as
+    """Return the syntax of a file. It is kept for later processes, because parsing takes as long as
     importing.
     """
     source = file.read_bytes()
-    # What was kept by other code than this module's is not read.
+    # The name includes this module's own code, because another version may digest differently.
     name = hashlib.sha256(source + Path(__file__).read_bytes()).hexdigest()
     kept = find_cache_folder() / "syntax" / f"{name}.json"
     try:
         return _Syntax(*json.loads(kept.read_bytes()))
     except (OSError, ValueError, TypeError):
         parsed = _parse(source)
-    # Nothing depends on whether it can be kept.
+    # A folder that cannot be written only costs time.
     with contextlib.suppress(OSError):
         keep_json(parsed, kept)
     return parsed
@@ -126,6 +126,7 @@ def read_docstring(module: str) -> str:
 
 
 def _parse(source: bytes) -> _Syntax:
+    """Return the syntax of source code."""
     tree = ast.parse(source)
     about = ast.get_docstring(tree) or ""
     imports = set()
@@ -151,8 +152,8 @@ def _parse(source: bytes) -> _Syntax:
 
 
 def _nest(part: Any) -> tuple | str:
-    """Return a syntax tree as nested tuples, without fields that are empty: newer Pythons have
-    more of these.
+    """Return a syntax tree as nested tuples, without fields that are empty: newer Pythons have more
+    of these.
     """
     if isinstance(part, ast.AST):
         fields = ((name, _nest(value)) for name, value in ast.iter_fields(part))
@@ -161,13 +162,14 @@ def _nest(part: Any) -> tuple | str:
 
 
 def _compute_digest(text: str) -> str:
+    """Return the digest of a text."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @cache
 def _find_imports(module: _Module) -> set[_Module]:
-    """The modules that a module imports, with their packages: from this package and, for a file
-    outside it, from the file's folder.
+    """Return the modules that a module imports, with their packages: from this package and, for a
+    file outside it, from the file's folder.
     """
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
@@ -185,8 +187,8 @@ def _find_imports(module: _Module) -> set[_Module]:
 
 
 def compute_source_digest(*modules: str) -> str:
-    """Digest of modules and everything that they import, directly or indirectly, from this package
-    or, for a file, from its folder.
+    """Return the digest of modules and everything that they import, directly or indirectly, from
+    this package or, for a file, from its folder.
 
     A module is a dotted name of this package or the path of a file, such as a user's planner.
     Comments, docstrings and layout do not count: the digest is taken over syntax trees. Raises
@@ -202,9 +204,9 @@ def find_sources(*modules: str) -> list[Path]:
 
 @cache
 def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, str]:
-    """Return the digest of some functions, of all that they import from this package, and of
-    further modules, and by name the versions of the libraries among `COMPUTING` that these import:
-    what a job's results depend on.
+    """Return what the results of a job depend on: a digest of functions, of all that they import
+    from this package, and of further modules; and library -> version, for those among `COMPUTING`
+    that these import.
     """
     trees = []
     named = set(modules)
@@ -224,13 +226,13 @@ def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, s
 
 @cache
 def find_library_version(name: str) -> str:
-    """The version of an installed library."""
+    """Return the version of an installed library."""
     return importlib.metadata.version(name)
 
 
 class _Reach(NamedTuple):
-    """What modules depend on: the digest of `compute_source_digest`; the libraries among
-    `COMPUTING` that are imported anywhere; and files of source.
+    """Everything that modules depend on: the digest of `compute_source_digest`, the libraries among
+    `COMPUTING` that are imported anywhere, and files of source.
     """
 
     digest: str
@@ -240,6 +242,7 @@ class _Reach(NamedTuple):
 
 @cache
 def _find_reached(*modules: str) -> _Reach:
+    """Return everything that modules depend on. Raises ValueError for a missing module."""
     todo, texts, libraries = [], {}, set()
     for module in map(_read_module, modules):
         if module.file() is None:

@@ -1,6 +1,6 @@
-"""Where compiled kernels of this package lie: with the user, for all clones, one folder for each
-state of the code from which a kernel is compiled. Of several processes that need the same kernel at
-the same time, one compiles it, and the others wait for it.
+"""Keep compiled kernels of this package in the user's cache, for all clones: one folder for each
+state of the code from which a kernel is compiled. If several processes need the same kernel at the
+same time, one compiles it, and the others wait for it.
 
 Only functions that `bezierplan.kernels` decorates are kept here. numba's own classes and settings
 stay as they are, so other libraries in the same process keep their compiled functions where they
@@ -44,7 +44,7 @@ FOLDERS = [
     find_user_cache_folder() / "-".join(["kernels", *_VERSIONS]),
     find_cache_folder() / "kernels",
 ]
-"""Folders of the compiled kernels of all modules: the first one that can be written."""
+"""Folders for the compiled kernels of all modules; the first that can be written is used."""
 MOST_BYTES = 500_000_000
 _DAY = 86_400.0
 
@@ -79,23 +79,23 @@ class _Locator(_CacheLocator):
         )
 
     def get_cache_path(self) -> str:
-        """The folder."""
+        """Return the folder."""
         return str(self._folder)
 
     def get_source_stamp(self) -> str:
-        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder
-        lies.
+        """Return what identifies the source of a cached kernel: the folder's name alone, wherever
+        the folder lies.
         """
         return self._folder.name
 
     def get_disambiguator(self) -> str:
-        """Distinguishes functions with the same name."""
+        """Return what tells apart functions with the same name."""
         return self._disambiguator
 
 
 class _File(IndexDataCacheFile):
-    """A file of the cache of which a damaged one counts as missing, so the kernel is compiled and
-    written again; numba ends the process.
+    """A file of the cache. A damaged one counts as missing, so the kernel is compiled and written
+    again; numba would end the process.
     """
 
     def _load_index(self) -> dict:
@@ -112,8 +112,8 @@ class _File(IndexDataCacheFile):
 
 
 class _Implementation(CompileResultCacheImpl):
-    """How the cache names a kernel's files, for the folder that is given instead of one that numba
-    looks for.
+    """The cache's rule for naming a kernel's files, for a folder that is given, in place of one
+    that numba looks for.
     """
 
     def __init__(self, py_func: FunctionType, folder: Path) -> None:
@@ -134,12 +134,13 @@ class KernelCache(FunctionCache):
         self.enable()
 
     def keeps(self, signature: Any, codegen: Any) -> bool:
-        """Whether the kernel is kept for a signature."""
+        """Return whether the kernel is kept for a signature."""
         return self._index_key(signature, codegen) in self._cache_file._load_index()
 
 
 @cache
 def _can_be_written(folder: Path) -> bool:
+    """Return whether files can be created in a folder, which is made if necessary."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         # numba's own test: a folder can have the mode of one that can be written, and be none.
@@ -167,9 +168,7 @@ class Kernel(CPUDispatcher):
                 return
 
     def compile(self, sig: Any) -> Any:
-        """Load the kernel, or compile and keep it, for one process at a time where it has to
-        compile.
-        """
+        """Load the kernel, or compile and keep it; only one process at a time compiles it."""
         with global_compiler_lock:
             if isinstance(sig, tuple):
                 # numba would compile a kernel once more for each constant that another kernel
@@ -190,8 +189,8 @@ class Kernel(CPUDispatcher):
 
 @cache
 def remove_old(folder: Path, most: int) -> None:
-    """Remove the kernels that were compiled first, of those that are older than a day, until a
-    folder has at most so many bytes.
+    """Remove kernels, oldest first, until a folder has at most so many bytes; those of the last day
+    stay.
     """
     sizes = {
         state: sum(file.stat().st_size for file in state.iterdir())
@@ -212,7 +211,7 @@ def _tell() -> None:
 
 @contextmanager
 def _collect_garbage_rarely() -> Iterator[None]:
-    """Collect garbage less often."""
+    """Collect garbage less often in a block."""
     before = gc.get_threshold()
     gc.set_threshold(*COLLECTION_THRESHOLDS)
     try:
@@ -223,11 +222,12 @@ def _collect_garbage_rarely() -> Iterator[None]:
 
 @contextmanager
 def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
-    """Hold the lock of a folder of kernels; the operating system releases it if this process is
-    killed. locks: folders in which this process compiles, each for a kernel of the one before.
+    """Hold the lock of a folder of kernels in a block. The operating system releases it if this
+    process is killed.
 
-    Without the lock, kernels are compiled by each process that needs them: on a file system without
-    locks, and after `PATIENCE` seconds.
+    locks: folders in which this process compiles, each for a kernel of the one before. On a file
+    system without locks, and after `PATIENCE` seconds, the block goes on without the lock: then
+    each process that needs a kernel compiles it.
     """
     if folder in locks:
         yield
@@ -245,7 +245,9 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
 
 
 def _is_locked(lock: Any) -> bool:
-    """Whether a file is locked now by this process, or cannot be locked at all."""
+    """Return whether this process now holds the lock on a file, or the file cannot be locked at
+    all.
+    """
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -1,4 +1,4 @@
-"""Modules by name: those of this package, and files of users; and the code of a study."""
+"""Load modules by name, of this package or users' files, and find the code of a study."""
 
 import importlib
 import importlib.util
@@ -10,20 +10,22 @@ from types import ModuleType
 from bezierplan.places import PACKAGE
 
 USERS = "study_"
-"""How the names of modules begin that are users' files."""
+"""Beginning of the names of modules that are users' files."""
 PARTS = ("metrics", "worlds", "functions", "panels", "audit")
 """Files of code, without `.py`, that the folder of a study may have."""
 
 
 def is_file(name: str) -> bool:
-    """Whether a module is given as the path of a user's file, and not as a name in this package."""
+    """Return whether a module is given as the path of a user's file, and not as a name in this
+    package.
+    """
     return name.endswith(".py")
 
 
 @cache
 def load_module(name: str) -> ModuleType:
-    """A module: `bezierplan.a.b` of this package, or `folder/name.py`, a user's file, which can
-    import the modules next to it at the top of the file.
+    """Load a module: `bezierplan.a.b` of this package, or `folder/name.py`, a user's file, which
+    can import the modules next to it at the top of the file.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
@@ -53,7 +55,7 @@ def load_module(name: str) -> ModuleType:
 
 
 def find_code(study: str, folder: str) -> dict[str, str]:
-    """The code of a study, as names for `load_module`, by its part of `PARTS`: files of its folder,
+    """Return the code of a study, part of `PARTS` -> name for `load_module`: files of its folder,
     or for a paper of this project modules of `bezierplan.papers`.
     """
     ours = PACKAGE / "papers" / study
@@ -66,8 +68,8 @@ def find_code(study: str, folder: str) -> dict[str, str]:
 
 @cache
 def find_kinds(folder: str, part: str) -> dict[str, str]:
-    """Name -> module, of one file per kind: those of a folder of this package, and those that the
-    folders `part` of its papers hold.
+    """Return name -> module, of one file per kind: those of a folder of this package, and those in
+    the folder `part` of its papers.
     """
     files = [*(PACKAGE / folder).glob("[!_]*.py"), *PACKAGE.glob(f"papers/*/{part}/[!_]*.py")]
     return {

@@ -1,7 +1,7 @@
-"""Files that the code of a study opens while a job works: what the job makes follows from them too.
+"""Files that a study's code opens while a job works. The job's results follow from them too.
 
 They are known when the job is done. So they are kept beside Snakemake's own records, by the key of
-the job, with the digests of what they held; the next start of the workflow sees which have changed.
+the job, with digests of their content; the next start of the workflow sees which have changed.
 """
 
 import importlib.util
@@ -21,9 +21,9 @@ from bezierplan.places import PACKAGE, find_cache_folder, find_user_cache_folder
 OPENS = "opens "
 RECORDS = Path(".snakemake") / "opened"
 SEEN: set[str] = set()
-"""The files that were opened in this process, and in processes that it has awaited."""
+"""Files that were opened in this process, and in processes that it has awaited."""
 
-# What belongs to the system, to libraries, to this package or to a user's caches.
+# Files of the system, of libraries, of this package and of a user's caches are not noted.
 _ELSEWHERE = (
     *("/proc/", "/sys/", "/dev/", "/etc/", "/usr/", f"{Path.home()}/."),
     *map(
@@ -35,11 +35,12 @@ _ELSEWHERE = (
 
 @cache
 def watch() -> None:
-    """From now on note each file that the code of a study opens to read."""
+    """Note from now on each file that a study's code opens to read."""
     sys.addaudithook(_note)
 
 
 def _note(event: str, arguments: tuple[Any, ...]) -> None:
+    """Note a file, if a study's code opens it to read (an audit hook of Python)."""
     if event != "open" or not isinstance(arguments[0], str | bytes):
         return
     frames = (frame.f_globals for frame, _ in traceback.walk_stack(None))
@@ -47,6 +48,7 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
     if arguments[2] & (os.O_WRONLY | os.O_RDWR) or not of_study:
         return
     file = os.path.realpath(os.fsdecode(arguments[0]))
+    # The source counts: Python writes the compiled file by itself.
     if file.endswith(".pyc"):
         file = importlib.util.source_from_cache(file)
     if "__pycache__" not in file and not file.startswith(_ELSEWHERE):
@@ -54,7 +56,7 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 def keep(job: str, sources: Iterable[str | Path]) -> None:
-    """Keep the files that this process has noted but for some, for the job of a key."""
+    """Keep the files that this process has noted, except for `sources`, for the job of a key."""
     before, files = read_kept(job), filter(os.path.isfile, SEEN - {*map(os.path.realpath, sources)})
     if new := {f"{OPENS}{shorten_path(Path(file))}" for file in files} - before.keys():
         keep_json(before | hash_contents(sorted(new)), RECORDS / f"{job}.json")
@@ -67,7 +69,7 @@ def read_kept(job: str) -> dict[str, str]:
 
 
 def hash_contents(names: Iterable[str]) -> dict[str, str]:
-    """Return, by each name `opens FILE`, the digest of what the file holds now."""
+    """Return `opens FILE` -> the digest of what the file holds now, for names of this form."""
     return {
         name: compute_content_digest(name.removeprefix(OPENS))
         for name in names

@@ -1,1 +1,1 @@
-"""Runs: problems, chunks of runs, the contract of planners, digests and logs of jobs."""
+"""Runs: problems, chunks of runs, the contract of planners, and the processes and logs of jobs."""

@@ -1,8 +1,7 @@
-"""The one door for planners' answers: what comes in is copied once into plain values, and only the
-copy is judged and stored.
+"""Copy planners' answers once into plain values; only the copy is judged and stored.
 
-It serves runs, drives, the contract tests and `python -m bezierplan plan` alike, whether an answer
-comes from this process or, as text, from another one.
+Runs, drives, contract tests and `python -m bezierplan plan` all use it, whether an answer comes
+from this process or, as text, from another one.
 """
 
 import math
@@ -23,27 +22,30 @@ from bezierplan.schema.words import describe_in_one_line
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}
-"""Most control points of a curve: the checker judges chains of so many within seconds."""
+"""Most control points of a curve. The checker judges chains of so many within seconds."""
 MOST_BLENDED = 1_000
-"""Likewise of other curves, whose matrix grows with the square of their number."""
+"""Most control points of other curves, whose matrix grows with the square of their number."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 _LARGEST_WHOLE = 2**63 - 1
-# Beside fractions in a column, larger whole numbers are not exact.
+# Larger whole numbers would lose digits in a column that also holds fractions.
 _EXACT = 2**53
+# numpy's truth value is not a subclass of Python's.
 _TRUTHS = (bool, np.bool_)
 
 NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
 
 
 class Unfit(ValueError):
-    """An answer that no row may show; the message is one line that begins with the field."""
+    """An answer that no row may show. The message is one line that begins with the field."""
 
 
 @contextmanager
-def of(name: str) -> Iterator[None]:
-    """A block that executes code of a planner, or reads its answer. Raises PlannerFailure,
-    beginning with a name, for any exception.
+def wrap_errors(name: str) -> Iterator[None]:
+    """Turn any exception in a block that runs a planner, or reads its answer, into a
+    PlannerFailure.
+
+    name: how the message begins.
     """
     try:
         yield
@@ -56,11 +58,11 @@ def of(name: str) -> Iterator[None]:
 
 
 def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
-    """A planner's answer as a Plan of plain values, copied once: its points and history are new
-    arrays of float64.
+    """Copy a planner's answer into a Plan of plain values, with new float64 arrays for its points
+    and history.
 
-    names: names not allowed for extra columns. Raises Unfit for the first field with another type,
-    form or range.
+    names: names that its extra columns cannot have. Raises Unfit for the first field with another
+    type, form or range.
     """
     if not isinstance(answer, Plan):
         raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
@@ -70,7 +72,7 @@ def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
         claimed_feasible=_check_claim(answer.claimed_feasible),
         evaluations=_check_evaluations(answer.evaluations),
         history=_check_history(answer.history),
-        stop=_stop(answer.stop),
+        stop=_check_stop(answer.stop),
         extra=_check_extra(answer.extra, names),
     )
     if plan.path is None and plan.claimed_feasible:
@@ -79,18 +81,22 @@ def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
 
 
 def accept_answer(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan:
-    """Convert an answer whose path joins the problem's start and target. Raises Unfit."""
+    """Convert an answer, and check that its path joins the problem's start and target. Raises
+    Unfit.
+    """
     plan = convert_answer(answer, names)
     check_ends(plan.path, problem)
     return plan
 
 
 def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
-    """Raise Unfit for columns of a planner's own that are others than those of its first run; or,
-    where they are to be finite, for an infinite number.
+    """Raise Unfit if a plan's own columns differ from those of the planner's first run.
+
+    finite: refuse infinite numbers in them too.
     """
     for name in {**first.extra, **plan.extra}:
         pair = plan.extra.get(name), first.extra.get(name)
+        # A column of a table has one type in all rows.
         if None in pair or len({isinstance(value, _TRUTHS) for value in pair}) > 1:
             raise Unfit(
                 f"column {name}: missing, or a truth and a number in two runs; a table needs the "
@@ -101,8 +107,8 @@ def check_columns(plan: Plan, first: Plan, finite: bool) -> None:
 
 
 def check_history(plan: Plan, keeps_best: bool) -> None:
-    """Raise Unfit for the history of a planner that keeps the best path, if it rises, or does not
-    end with the objective of its path.
+    """Raise Unfit if a planner keeps the best path, but its history rises or does not end with the
+    objective of its path.
     """
     if keeps_best and (plan.history[1:] > plan.history[:-1]).any():
         raise Unfit("history: rises; expected the best objective so far, or keeps_best = False")
@@ -116,8 +122,8 @@ def check_history(plan: Plan, keeps_best: bool) -> None:
 def check_ends(path: Path | None, problem: Problem) -> None:
     """Raise Unfit if an end of a path differs from the problem's.
 
-    The comparison is bitwise, without a tolerance: a curve begins and ends at control points, into
-    which a planner copies the problem's own numbers, so nothing is rounded.
+    The comparison is bitwise, without a tolerance: a curve begins and ends at control points, and a
+    planner copies the problem's own numbers into these, so nothing is rounded.
     """
     for end, place in zip(("start", "target"), curves.ends(path.curve) if path else ()):
         wanted, point = getattr(problem, end), tuple(path.points[place].tolist())
@@ -126,19 +132,19 @@ def check_ends(path: Path | None, problem: Problem) -> None:
 
 
 def store_path(path: Path | None) -> tuple[str, list[float]]:
-    """A path as a row stores it: its curve, and its control points flat as x0, y0, x1, y1, ...;
-    empty without a path.
+    """Return a path as a row stores it: its curve, and its control points flat as x0, y0, x1, y1,
+    ...; both are empty without a path.
     """
     return ("", []) if path is None else (path.curve, path.points.ravel().tolist())
 
 
 def restore_path(curve: str, points: Any) -> Path | None:
-    """The path that `store_path` wrote."""
+    """Return the path that `store_path` stored, or None."""
     return Path(curve, np.array(points, dtype=float).reshape(-1, 2)) if curve else None
 
 
 def judge_path(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
-    """Length and verdict of a path; without one, not a number and `NO_PATH`."""
+    """Return the length and the verdict of a path; nan and `NO_PATH` without one."""
     if path is None:
         return math.nan, NO_PATH
     pieces = curves.bezier_pieces(path)
@@ -151,7 +157,7 @@ def judge_path(path: Path | None, blocked: Region) -> tuple[float, checker.Check
 
 
 def read_path(path: Any) -> Path:
-    """A path as plain values. Raises Unfit."""
+    """Copy a path into plain values. Raises Unfit."""
     if not isinstance(path, Path):
         raise Unfit("path: expected None or a Path")
     if path.curve not in curves.CURVES:
@@ -161,12 +167,13 @@ def read_path(path: Any) -> Path:
     most = MOST_POINTS.get(path.curve, MOST_BLENDED)
     if len(path.points) > most:
         raise Unfit(f"path: points: {len(path.points)}; expected at most {most} of a {path.curve}")
+    # In rows: an array in columns is another type, for which kernels compile once more.
     copy = Path(path.curve, np.array(path.points, dtype=float, order="C"))
     if not np.isfinite(copy.points).all():
         raise Unfit("path: points: expected finite numbers")
     try:
-        # A path that the checker rejects would abort a study: a coordinate too large, a degree too
-        # high.
+        # The checker refuses coordinates and degrees that are too large; an exception later would
+        # end a whole study.
         checker.refuse_unfit(curves.bezier_pieces(copy))
     except ValueError as error:
         raise Unfit(f"path: {' '.join(str(error).split())}") from None
@@ -199,7 +206,7 @@ def _check_history(values: Any) -> np.ndarray:
     return np.array(values, dtype=float)
 
 
-def _stop(value: Any) -> str:
+def _check_stop(value: Any) -> str:
     if not isinstance(value, str) or not value.isprintable():
         raise Unfit("stop: expected a word")
     return value
@@ -228,12 +235,12 @@ def _check_column(name: str, value: Any) -> float | bool:
 
 
 def _is_a(kind: type, value: Any) -> bool:
-    """Whether a value is a number of a kind, and no truth."""
+    """Return whether a value is a number of a kind, and not a boolean."""
     return isinstance(value, kind) and not isinstance(value, _TRUTHS)
 
 
 def _is_array(value: Any, dimensions: int, kinds: str) -> bool:
-    """Whether a value is an array with a number of dimensions and a dtype kind among the given
-    numpy letters.
+    """Return whether a value is an array with a number of dimensions and one of the numpy kinds
+    (letters).
     """
     return isinstance(value, np.ndarray) and value.ndim == dimensions and value.dtype.kind in kinds

@@ -1,4 +1,4 @@
-"""What a job of runs is made from."""
+"""The description of a job that makes runs."""
 
 import itertools
 from pathlib import Path
@@ -13,12 +13,13 @@ class Condition(NamedTuple):
 
     @property
     def name(self) -> str:
+        """The condition as it stands in a run's name."""
         return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
 
 
 class Chunk(NamedTuple):
-    """One method on every condition of an experiment, for a block of repeats: all that the runs
-    depend on beside the problems themselves, as names and plain values.
+    """One method on each condition of an experiment, for a block of repeats. It holds, as names and
+    plain values, all that the runs depend on beside the problems themselves.
     """
 
     study: str
@@ -26,27 +27,26 @@ class Chunk(NamedTuple):
     method: str
     planner: str
     settings: dict[str, Any]
-    """Those of the method."""
+    """The method's settings, except those that vary."""
     problems: dict[str, dict[str, Any]]
-    """By name, the problem's workspace and, if present, layout, obstacles and their settings."""
+    """Name -> the problem's workspace, and its layout, obstacles and settings, if it has any."""
     vary: dict[str, list]
-    """Setting or preset -> values; every combination of problems and values is a condition."""
+    """Setting or preset -> values; each combination of problems and values is a condition."""
     presets: dict[str, dict[str, dict[str, Any]]]
-    """Preset -> value, as text -> settings that go with it."""
+    """Preset -> value, as text -> the settings that it stands for."""
     seeds: str
-    """A run's seed comes from its id (`own`), from its id without the method (`shared`), or from
-    study, experiment, layout and repeat alone (`common`: all methods and conditions share random
-    numbers).
+    """Source of a run's seed: its id (`own`), its id without the method (`shared`), or study,
+    experiment, layout and repeat alone (`common`: all methods and conditions share random numbers).
     """
     repeats: list[int]
     """[first, last): the repeats to run."""
     time_limit: float | None = None
-    """Seconds, including compilation, after which a run ends its job."""
+    """Seconds, compiling included, after which a run ends its job."""
     policy: dict[str, Any] | None = None
-    """What the robot does, where the world moves."""
+    """The robot's policy, as plain values, if the world moves."""
 
     def conditions(self) -> list[Condition]:
-        """Every combination of problems and varied values, in the order given."""
+        """Return each combination of problems and varied values, in the order given."""
         return [
             Condition(problem, dict(zip(self.vary, values, strict=True)))
             for problem in self.problems
@@ -55,16 +55,16 @@ class Chunk(NamedTuple):
 
     @property
     def runs(self) -> int:
-        """How many runs it makes."""
+        """Number of its runs."""
         first, last = self.repeats
         return len(self.conditions()) * (last - first)
 
     @property
     def name(self) -> str:
-        """What the ids of its runs have in common, with a star for conditions."""
+        """The common part of the ids of its runs, with a star for conditions."""
         return f"{self.study}/{self.experiment}/*/{self.method}"
 
 
 def find_chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
-    """The files of chunks below a folder, without the times and traces next to them."""
+    """Return the files of chunks below a folder, without the times and traces beside them."""
     return [file for file in sorted(folder.glob(pattern)) if file.stem.isdecimal()]

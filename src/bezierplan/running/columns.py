@@ -1,13 +1,15 @@
-"""Columns of the runs tables, each declared once, as a line of columns.csv next to this file: its
-table, what its values are, its unit and its meaning. What a file of runs holds (`rows.table`), what
-is expected of it when it is read (`rows.find_fault`), which names are taken, what a study may
-select by (`study.design`), and the tables in results/README.md (`python docs/tables_of_keys.py`)
-follow.
+"""Columns of the runs tables, each declared once, as a line of columns.csv next to this file:
+table, name, type, meaning and unit.
 
-A row is what is known before its run (`Planned`, with the place of its problem after `problem` and
-its settings after `planner`), what the run found out (`Outcome`), for a drive more of that
-(`DriveOutcome`), and the planner's own columns. Bounds (`Bound`, `DriveBound`) and times (`Times`,
-`DriveTimes`), which are not reproducible, are joined when it is read.
+From these lines follow the types in files (`rows.build_table`), the check when a file is read
+(`rows.find_fault`), the names that are taken, the columns that a study may select by
+(`study.design`), and the tables in results/README.md (`python docs/tables_of_keys.py`).
+
+A row holds the columns that are known before its run (`Planned`, with the place of its problem
+after `problem` and its settings after `planner`), the outcome of the run (`Outcome`, for a drive
+also `DriveOutcome`), and the planner's own columns. Bounds (`Bound`, `DriveBound`) and times
+(`Times`, `DriveTimes`) are joined when it is read; times are apart because they cannot be
+reproduced.
 """
 
 import csv
@@ -28,12 +30,12 @@ VALUES = {
     "flag": bool,
     "numbers": list[float],
 }
-"""What a column's values are, as columns.csv says it -> their type."""
+"""Type of a column's values, as columns.csv names it -> Python's type."""
 
 
 class Column(NamedTuple):
-    """What a column means, in a phrase; its unit, empty for a pure number; what it means of a
-    drive, where that is something else; and what a reader of the file should know beside.
+    """A column's meaning in a phrase, its unit (empty for a pure number), its meaning for a drive
+    where that differs, and what a reader of the file should know beside.
     """
 
     meaning: str
@@ -43,7 +45,7 @@ class Column(NamedTuple):
 
 
 def read_tables(module: str) -> list[type]:
-    """Named tuples, one for each table of the file columns.csv next to a module's file."""
+    """Read the file columns.csv next to a module; return a named tuple for each of its tables."""
     fields: dict[str, list[tuple[str, Any]]] = {}
     with Path(module).with_suffix(".csv").open(encoding="utf-8", newline="") as file:
         for table, name, values, *about in islice(csv.reader(file), 1, None):
@@ -56,8 +58,8 @@ Planned, Outcome, DriveOutcome, Bound, DriveBound, Times, DriveTimes = read_tabl
 
 
 class Table(NamedTuple):
-    """What declares the columns of a kind of file, and what declares those that it has beside them
-    if its runs are drives.
+    """The tables that declare the columns of a kind of file, and the one for its further columns if
+    its runs are drives.
     """
 
     every: tuple[type, ...]
@@ -72,13 +74,13 @@ TABLES = {
 """Kind of file -> its columns."""
 
 TYPES = {RunName: "name", str: "word", int: "number", float: "number", bool: "flag"}
-"""Type of a value -> its word in studies' faults: a name is one for each run, a word is text, a
-flag true or false; others are lists.
+"""Python's type -> its word in the faults of studies. A name differs in each run, a word is text, a
+flag is true or false; other types are lists.
 """
 
 
-def declared(*tables: type) -> dict[str, tuple[type, Column]]:
-    """Columns with the types of their values and what they mean."""
+def read_columns(*tables: type) -> dict[str, tuple[type, Column]]:
+    """Return the columns of some tables: name -> type of its values and meaning."""
     return {
         name: typing.get_args(annotation)
         for table in tables
@@ -87,35 +89,32 @@ def declared(*tables: type) -> dict[str, tuple[type, Column]]:
 
 
 def _read_types(*tables: type) -> dict[str, str]:
-    return {name: TYPES.get(kind, "list") for name, (kind, _) in declared(*tables).items()}
+    """Return column -> word for its type, for some tables."""
+    return {name: TYPES.get(kind, "list") for name, (kind, _) in read_columns(*tables).items()}
 
 
 PLANNED = _read_types(Planned)
-"""Columns of every runs table known before a run, beside settings, with their types (`TYPES`)."""
+"""Columns of every runs table that are known before a run, beside settings -> type (`TYPES`)."""
 
 RESULTS = _read_types(Outcome)
-"""Likewise: those that a run finds out; the settings and a planner's extra columns stand between
-`planner` and `objective`, and at the end.
+"""Columns of every runs table that a run finds out -> type. Settings stand before `objective`, and
+a planner's extra columns at the end.
 """
 
 DRIVE_RESULTS = _read_types(DriveOutcome)
-"""Columns of a runs table that only drives have."""
+"""Columns of a runs table that only drives have -> type."""
 
 ANSWER = ["path_points", "history"]
-"""Columns of a run by which its answer equals that of another one: lists of numbers."""
+"""Columns, lists of numbers, by which two runs have equal answers."""
 
 JOINED = {name: kind for name, kind in _read_types(Bound, Times).items() if name not in PLANNED}
-"""Columns joined to a runs table when it is read: those of `problems.compute_bounds`, and the
-times.
-"""
+"""Columns that are joined to a runs table when it is read -> type: bounds and times."""
 
 DRIVE_JOINED = _read_types(DriveBound, DriveTimes)
-"""Columns that are joined to the table of drives: likewise, and the times of plans."""
+"""Columns that are joined to a table of drives -> type: their bounds, and the times of plans."""
 
 WORDS = ("value", "statistic", "metric", "n", "unit", "table")
-"""Columns of tables of results, beside those of the runs table that tell their rows apart."""
+"""Columns of tables of results, beside those of the runs table that identify a row."""
 
 TAKEN = frozenset((*PLANNED, *RESULTS, *DRIVE_RESULTS, *PLACE, *JOINED, *DRIVE_JOINED))
-"""Names that no planner's extra column can have; the job's settings and what it varies are others.
-A setting cannot have them either.
-"""
+"""Names that neither a planner's extra column nor a setting can have."""

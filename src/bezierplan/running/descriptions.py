@@ -1,16 +1,16 @@
-"""What a job that builds problems is made from."""
+"""The description of a job that builds problems."""
 
 from typing import Any, NamedTuple
 
 
 class Descriptions(NamedTuple):
-    """What the problems of an experiment are built from, beside map files, as plain values."""
+    """Plain values from which the problems of an experiment are built, beside map files."""
 
     study: str
     problems: dict[str, dict[str, Any]]
-    """By name, the problem without the settings that belong to it."""
+    """Name -> the problem, without the settings that belong to it."""
     workspaces: dict[str, dict[str, Any]]
-    """By name, those of the problems, as their files describe them."""
+    """Name -> a workspace of these problems, as the study's file describes it."""
 
     @property
     def homes(self) -> dict[str, str]:

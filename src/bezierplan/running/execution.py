@@ -1,5 +1,5 @@
-"""One chunk of runs: one method on every condition of an experiment, for a block of repeats. In a
-world that moves, a run is a drive.
+"""Run a chunk: one method on each condition of an experiment, for a block of repeats. In a world
+that moves, a run is a drive.
 """
 
 import itertools
@@ -35,14 +35,15 @@ from bezierplan.workspaces.worlds import World
 
 
 def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
-    """The name of a run: study/experiment/condition/method/repeat."""
+    """Return the name of a run: study/experiment/condition/method/repeat."""
     return f"{chunk.study}/{chunk.experiment}/{condition.name}/{chunk.method}/{repeat}"
 
 
 def resolve_settings(chunk: Chunk, condition: Condition) -> dict[str, Any]:
-    """The settings of a chunk's method under a condition: those of its problem are applied first,
-    then the varied values. Presets expand to their settings; varied values that are not settings of
-    the planner are left out.
+    """Return all settings of a chunk's method under a condition.
+
+    Those of the problem come first, then the varied values. Presets expand to their settings;
+    varied values that are no settings of the planner are left out.
     """
     settings = chunk.settings | chunk.problems[condition.problem].get("settings", {})
     for name, value in condition.values.items():
@@ -54,10 +55,10 @@ def resolve_settings(chunk: Chunk, condition: Condition) -> dict[str, Any]:
 
 
 def build_task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
-    """A run as what executes planners needs it. Its generator is seeded from names only, not from
-    order, cores or chunks.
-    """
+    """Return a run in the form that `guard.worker` executes."""
     layout = chunk.problems[condition.problem].get("layout", "")
+    # The seed follows from names only, not from order, cores or chunks, so any run can be repeated
+    # alone.
     parts = {
         "own": [condition.name, chunk.method],
         "shared": [condition.name],
@@ -72,7 +73,7 @@ def build_task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
 
 
 def describe_chunk(chunk: Chunk) -> str:
-    """How a message about all runs of a chunk begins."""
+    """Return how a message about all runs of a chunk begins."""
     return f"run {chunk.name}: planner {chunk.planner}"
 
 
@@ -84,12 +85,16 @@ def run_tasks(
     worlds: dict[str, World] | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
-    """`worker.run_tasks` of a chunk's planner. Raises PlannerFailure, naming the run."""
+    """Run tasks of a chunk's planner, as `worker.run_tasks` does: in this process, or in one of its
+    own if the planner is a user's file. Raises PlannerFailure, naming the run.
+    """
     work = worker.Work(chunk.planner, problems, function, worlds, chunk.policy)
+    # A user's file may crash or stall the process that runs it.
     if is_file(chunk.planner):
         yield from process.run_isolated(work, tasks, again, describe_chunk(chunk), chunk.time_limit)
         return
     yield from worker.run_tasks(work, tasks, again, partial(begin, chunk.time_limit))
+    # The limit of time is for runs; judging the last one does not count.
     begin(None, describe_chunk(chunk))
 
 
@@ -101,8 +106,10 @@ def run(
     world: World | None = None,
     function: str = "plan",
 ) -> Any:
-    """The plan of one run; its track: the control points (n, 2) of the best path after each
-    iteration; or, in a world, its ride.
+    """Make one run and return its plan; its ride, in a world that moves.
+
+    function: `plan`, or `track` for the control points (n, 2) of the best path after each
+    iteration.
     """
     name, tasks = condition.problem, [build_task(chunk, condition, repeat)]
     worlds = {name: world} if world else None
@@ -111,7 +118,9 @@ def run(
 
 
 def track_again(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[np.ndarray]:
-    """The track of a run, by its row. Raises ValueError if it has another path than the row."""
+    """Repeat a stored run, and return its track. Raises ValueError if it ends in another path than
+    its row.
+    """
     track = run(chunk, *_find_condition(chunk, row), problem, function="track")
     _refuse_other_path(row, track[-1])
     return track
@@ -120,8 +129,8 @@ def track_again(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[
 def drive_again(
     chunk: Chunk, row: Mapping[str, Any], problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
-    """The drive of a run, by its row, and the verdict on it: for what no table keeps. Raises
-    ValueError if it has another path than the row.
+    """Repeat a stored drive, and return it with its verdict, because no table keeps all of a drive.
+    Raises ValueError if it ends in another path than its row.
     """
     ride = run(chunk, *_find_condition(chunk, row), problem, world)
     _refuse_other_path(row, rides.trace_path(ride).points)
@@ -129,12 +138,12 @@ def drive_again(
 
 
 def _find_condition(chunk: Chunk, row: Mapping[str, Any]) -> tuple[Condition, int]:
-    """The condition and the repeat of a row."""
+    """Return the condition and the repeat of a row."""
     return {each.name: each for each in chunk.conditions()}[row["condition"]], int(row["repeat"])
 
 
 def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
-    """Raise ValueError unless a run that was made again has the points (n, 2) of its row's path."""
+    """Raise ValueError unless a repeated run has the points (n, 2) of its row's path."""
     if not np.array_equal(points.ravel(), run["path_points"]):
         raise ValueError(
             f"run {run['id']}: its rerun ends in another path; the runs table comes from another "
@@ -143,7 +152,9 @@ def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
 
 
 def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
-    """The first columns of a row: the run's id and its parts, its place, all settings in force."""
+    """Return the first columns of a row: the run's id and its parts, its place, and all
+    settings.
+    """
     return {
         "id": run_id(chunk, condition, repeat),
         "study": chunk.study,
@@ -172,18 +183,18 @@ def build_row(
     problem: Problem,
     blocked: Region,
 ) -> dict[str, Any]:
-    """One row of the runs table, from a planner's answer. drew: whether it drew random numbers.
-    blocked: the region of the problem's workspace.
+    """Build one row of the runs table from a planner's answer.
 
-    Length and verdict are those of the points that the row holds. Raises PlannerFailure if the
-    answer is not valid for this problem: for example, if its path begins or ends elsewhere, or a
-    column would overwrite another.
+    drew: the run drew random numbers. blocked: the region of the problem's workspace. Raises
+    PlannerFailure if the answer is not valid for this problem: for example, if its path begins or
+    ends elsewhere, or a column would overwrite another.
     """
     run = build_task(chunk, condition, repeat)
-    with answer.of(run.name):
+    with answer.wrap_errors(run.name):
         plan = answer.accept_answer(plan, problem, [*TAKEN, *run.settings, *condition.values])
         answer.check_history(plan, interface.read_traits(chunk.planner).keeps_best)
     curve, points = answer.store_path(plan.path)
+    # The verdict is that of the points which the row holds.
     length, check = answer.judge_path(answer.restore_path(curve, points), blocked)
     outcome = Outcome(
         drew=drew,
@@ -211,25 +222,26 @@ def make_rows_again(
     problems: dict[str, Problem],
     worlds: dict[str, World],
 ) -> list[dict[str, Any]]:
-    """The rows of some runs, which are made again."""
+    """Repeat some runs and return their rows."""
     tasks = [build_task(chunk, *run) for run in runs]
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
-    judged = _judge(chunk, met, worlds)
+    judge_reply = _build_judge(chunk, met, worlds)
     return [
-        judged(*run, each)[0]
+        judge_reply(*run, each)[0]
         for run, each in zip(runs, run_tasks(chunk, met, tasks, worlds=worlds))
     ]
 
 
-def _judge(
+def _build_judge(
     chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
 ) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
-    """A function that makes, of what a run has found, a row, and of a drive its trace."""
+    """Return a function that turns a worker's reply into a row and, for a drive, its trace."""
+    # Built once: all runs on a problem are judged on the same region.
     regions = (
         {} if worlds else {name: build_region(each.workspace) for name, each in problems.items()}
     )
 
-    def judged(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
+    def judge_reply(condition: Condition, repeat: int, reply: worker.Reply) -> tuple[dict, dict]:
         name, result, drew = condition.problem, reply.result, reply.drew
         if not worlds:
             return build_row(
@@ -239,28 +251,27 @@ def _judge(
         outcome, trace = rides.judge_drive(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
-    return judged
+    return judge_reply
 
 
 def run_chunk(
     problems: dict[str, Problem], chunk: Chunk, worlds: dict[str, World] | None = None
 ) -> tuple[pa.Table, ...]:
-    """The runs of a chunk (columns as in `columns`); in a separate table because they are never
-    reproducible, their times; and, of drives in worlds, their traces (`rides.judge_drive`).
+    """Run a chunk; return tables of its runs and its times (columns as in `columns`), and of traces
+    if the runs are drives.
 
-    A warm-up makes times comparable, and its runs must repeat themselves. A planner whose repeats
-    are equal, and which does not say so, is told on stderr. Raises PlannerFailure, naming the run,
-    if a planner fails, does not return a valid plan for the problem (`build_row`), or gives another
-    plan when its first or last run is repeated.
+    Raises PlannerFailure, naming the run, if a planner fails, does not return a valid plan for the
+    problem (`build_row`), or gives another plan when its first or last run is repeated. If all
+    repeats of a planner are equal, and it does not declare so, a line on stderr says it.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
-    every, judged = chunk.conditions(), _judge(chunk, met, moving)
+    every, judge_reply = chunk.conditions(), _build_judge(chunk, met, moving)
     deterministic = interface.read_traits(chunk.planner).deterministic
     order = _order(chunk, len(every), range(*chunk.repeats))
     tasks = [build_task(chunk, every[k], repeat) for k, repeat in order]
-    # The first run, and in a process of its own the last one. What needs no random numbers must not
-    # be changed by others.
+    # They are made twice: the first run, and in a process of its own the last one. A deterministic
+    # planner gets another repeat's generator, which must change nothing.
     again = [
         build_task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])
     ]
@@ -268,15 +279,17 @@ def run_chunk(
     for reply in run_tasks(chunk, met, tasks, again, moving):
         (k, repeat), first = order[reply.number], first or reply.result
         try:
-            outcome, trace = judged(every[k], repeat, reply)
+            outcome, trace = judge_reply(every[k], repeat, reply)
             if not moving:
-                with answer.of(tasks[reply.number].name):
+                with answer.wrap_errors(tasks[reply.number].name):
                     answer.check_columns(reply.result, first, is_file(chunk.planner))
             if reply.number < 0:
+                # A repetition comes before its run and is numbered from the end.
                 warm[reply.number + len(order)].append(outcome)
                 continue
             refuse_unrepeatable(warm[reply.number], outcome, chunk, deterministic)
         except PlannerFailure as failure:
+            # The other runs go on, so that all that fail are named.
             failures[str(failure)] = None
             continue
         times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
@@ -285,11 +298,11 @@ def run_chunk(
         done[k, repeat] = outcome, times, trace
     if failures:
         raise PlannerFailure("\n".join(failures))
+    # Rows are in the order of conditions and repeats, whatever the order of runs was.
     runs, times, traces = zip(*(done[key] for key in sorted(done)))
     found = [row for row in runs if row["path_curve"]]
     answers = {repr([row[name] for name in (*ANSWER, "condition")]) for row in found}
     drew, wanted = any(row["drew"] for row in runs), len({row["condition"] for row in found})
-    # A few repeats of a planner that draws may be equal by chance.
     many = len(found) >= wanted * (5 if drew else 2)
     if not deterministic and 0 < wanted == len(answers) and many:
         print(
@@ -305,7 +318,8 @@ def run_chunk(
 
 
 def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int]]:
-    """All pairs of a condition's number and a repeat, in a random order seeded by the chunk's name.
+    """Return all pairs of a condition's number and a repeat, in a random order seeded by the
+    chunk's name.
 
     A processor's speed drifts, and the first call of compiled code loads it. This order spreads
     both effects over all conditions. It affects only times.
@@ -318,7 +332,7 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
 def refuse_unrepeatable(
     repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
 ) -> None:
-    """Raise PlannerFailure, naming the run, if its repetitions do not have the bits of its row."""
+    """Raise PlannerFailure, naming the run, unless its repetitions equal its row in every bit."""
     for again in repetitions:
         # The text of a number tells all its bits, and unlike the number a NaN is equal to itself.
         column = next(

@@ -1,7 +1,7 @@
-"""The input files of jobs, and where results lie.
+"""The input files of jobs, and the folders of results.
 
-A job knows which results it reads (`Shows`), and Snakemake hands it their files in that order, so
-no job takes paths apart: where files lie is up to the rules, and to a workflow of which this one is
+A job knows which results it reads (`Shows`), and Snakemake hands it their files in that order. So
+no job takes paths apart: rules decide where files lie, and so does a workflow of which this one is
 a module.
 """
 
@@ -18,16 +18,17 @@ PAPER, BEYOND = "paper", "beyond"
 
 
 def choose_tree(artefact: str) -> str:
-    """The folder of a table or figure: `paper` if it has a number in the paper.
+    """Return the folder of a table or figure: `paper` if it has a number in the paper, otherwise
+    `beyond`.
 
-    >>> tree("table1"), tree("figure_scale")
+    >>> choose_tree("table1"), choose_tree("figure_scale")
     ('paper', 'beyond')
     """
     return PAPER if re.fullmatch(r"(table|figure)[0-9]+", artefact) else BEYOND
 
 
 class Files(NamedTuple):
-    """Files of an experiment: chunks of runs by method, its problems and their exact bounds."""
+    """Files of an experiment: chunks of runs by method, its problems, and their exact bounds."""
 
     runs: dict[str, list[str]]
     problems: str
@@ -40,7 +41,7 @@ class Files(NamedTuple):
 
 
 def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
-    """The files of each experiment, from a job's inputs `runs`, `problems` and `bounds`."""
+    """Return experiment -> its files, from a job's inputs `runs`, `problems` and `bounds`."""
     runs = iter(getattr(inputs, "runs", ()))
     return {
         name: Files(
@@ -55,5 +56,5 @@ def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
 
 
 def group_by_table(files: Iterable[str]) -> dict[str, str]:
-    """Files of published numbers, or of comparisons with them, by the table that they are of."""
+    """Return table -> its file, of published numbers or of comparisons with them."""
     return {Path(file).name.split(".")[0]: file for file in files}

@@ -1,5 +1,5 @@
-"""One path through way points: the problem of each leg, what a planner answers to it, and the path
-of all.
+"""Plan one path through way points: a problem for each leg, an answer to each, and the
+joined path.
 """
 
 import math
@@ -18,26 +18,24 @@ from bezierplan.running.guard import process, worker
 from bezierplan.workspaces.problem import Path, Problem
 
 ROUNDED = "rounded_shortest_path"
-"""The planner without a method, and the one with a turning radius."""
+"""The planner that is used if no method is named; it rounds corners to a turning radius."""
 
 CHAINED = (ROUNDED, "shortest_path")
-"""Planners whose paths can be joined: chains of pieces."""
+"""Planners whose paths can be joined, because they are chains of pieces."""
 
 EXCESS = 0.01
-"""Where no turning radius is asked for, turns are as wide as a path allows that is longer than the
-shortest by this share at most.
+"""Without a turning radius, turns are as wide as a path allows that is longer than the shortest by
+this share at most.
 """
 
-# Two directions that differ by less, in radians, are no corner.
 _STRAIGHT = 1e-8
 
-# A radius that is smaller by less, as a share, is the same.
 _SAME = 1e-9
 
 
 def choose_rounding(names: Collection[str]) -> dict[str, float]:
-    """Return settings of the planner with a turning radius, beside those of some names: a radius
-    that is asked for may make the path as long as it needs.
+    """Return settings of the planner that rounds corners, beside those that are given by `names`.
+    To keep a given radius, the path may be as long as it needs.
     """
     if "turning_radius" in names:
         return {"excess": math.inf}
@@ -45,9 +43,9 @@ def choose_rounding(names: Collection[str]) -> dict[str, float]:
 
 
 def split_into_legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
-    """The problems from start to the first way point, and so on to the target.
+    """Return the problems from the start to the first way point, and so on to the target.
 
-    Raises ValueError for a way point that is not free, or equals its neighbour.
+    via: way points (x, y). Raises ValueError for one that is not free, or equals its neighbour.
     """
     places = [problem.start]
     for point in via:
@@ -64,7 +62,7 @@ def split_into_legs(problem: Problem, via: Sequence[tuple[float, float]]) -> lis
 
 
 def find_shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
-    """The exact shortest path through all legs."""
+    """Return the exact shortest path through all legs."""
     bounds = [shortest_paths.shortest_path(part) for part in parts]
     return shortest_paths.Bound(
         sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds])
@@ -72,8 +70,9 @@ def find_shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
 
 
 class Run(NamedTuple):
-    """A call of a planner for each leg of a problem. label: how messages about it begin. bound: the
-    exact shortest path through all legs.
+    """The calls of a planner for the legs of a problem, one for each.
+
+    label: how messages about it begin. bound: the exact shortest path through all legs.
     """
 
     label: str
@@ -87,11 +86,11 @@ class Run(NamedTuple):
 def yield_plans(
     plan: Callable[..., Any], runs: Sequence[Run], file: str
 ) -> Iterator[tuple[Run, Plan, float]]:
-    """Yield each run, what a planner answers in it, as plain values (`answer.accept_answer`), and
-    its CPU seconds.
+    """Yield each run with the planner's answer, as plain values, and its CPU seconds.
 
-    plan: its function. file: the path of its file, which is executed in a process of its own; empty
-    if it is not given as one. Raises PlannerFailure for an answer that is none.
+    plan: the planner's function. file: the path of the planner's file, which then runs in a process
+    of its own; empty for a planner of this package. Raises PlannerFailure for an answer that is not
+    valid.
     """
     problems, tasks = {}, []
     for run in runs:
@@ -109,7 +108,7 @@ def yield_plans(
         replies = (worker.Reply(0, *worker.time_call(call), True) for call in calls)
     for run in runs:
         made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
-        with answer.of(run.label):
+        with answer.wrap_errors(run.label):
             legs = [
                 answer.accept_answer(each.result, leg, taken) for each, leg in zip(made, run.legs)
             ]
@@ -117,8 +116,12 @@ def yield_plans(
 
 
 def join_answers(answers: Sequence[Plan]) -> Plan:
-    """One answer to all legs. A corner that is left at a way point counts as a turn."""
+    """Join the answers to all legs into one. A corner at a way point counts as a turn.
+
+    If a leg has no path, its answer is returned.
+    """
     lost = next((answer for answer in answers if answer.path is None), None)
+    # A path of which one leg is missing is no path.
     if lost or len(answers) == 1:
         return lost or answers[0]
     paths = [answer.path for answer in answers]
@@ -141,12 +144,12 @@ def join_answers(answers: Sequence[Plan]) -> Plan:
 
 
 def _has_corner(arriving: Path, leaving: Path) -> bool:
-    """Whether the direction of travel changes between two chains."""
+    """Return whether the direction of travel changes between two chains."""
     last, first = np.diff(arriving.points[-2:], axis=0)[0], np.diff(leaving.points[:2], axis=0)[0]
     cross = last[0] * first[1] - last[1] * first[0]
     return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
 
 
 def is_radius_kept(wish: float, radius: float) -> bool:
-    """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
+    """Return whether a path's tightest turn (nan without a path) keeps a turning radius."""
     return radius >= wish * (1 - _SAME)

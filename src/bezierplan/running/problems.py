@@ -1,11 +1,11 @@
-"""The problems of an experiment, and the worlds of those that move: built from their descriptions,
-and kept in a file with one row per problem. The workspace of a problem that moves is what planners
-see at the beginning.
+"""Build the problems of an experiment, and the worlds of those that move, from their descriptions,
+and keep them in a file with one row per problem.
 
-Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y
-(units), drawn (the workspace itself, as JSON: `workspaces.files.to_json`); where it moves, world
-(as JSON: `workspaces.worlds`). Columns of a file of bounds: `columns.Bound`, of drives
-`columns.DriveBound` too.
+The workspace of a problem that moves is what planners see at the beginning. Columns of a problem
+file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the
+workspace itself, as JSON: `workspaces.files.write_json`); where it moves, world (as JSON:
+`workspaces.worlds`). Columns of a file of bounds: `columns.Bound`, for drives `columns.DriveBound`
+too.
 """
 
 import math
@@ -28,31 +28,35 @@ from bezierplan.workspaces.grown import find_growth, original
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.worlds import World
 
+# A plan needs no pyarrow, which takes long to import and belongs to the extra `workflow`.
 if TYPE_CHECKING:
     import pyarrow as pa
 
 
 def place_problem(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
-    """A problem whose start and target are known to be free, on the map that suits a planner of
-    some kinds of workspace, None for all.
+    """Build a problem again on the map that suits a planner, and check its start and target.
 
-    Raises ValueError as `build` does.
+    kinds: the kinds of workspace that the planner serves, None for all. Raises ValueError as
+    `build` does.
     """
     home = robot.choose_suitable(problem.workspace, kinds)
     return build(problem.name, {"start": problem.start, "target": problem.target}, home)
 
 
 def build(name: str, description: dict, workspace: Workspace) -> Problem:
-    """A problem from its description: start and target, (x, y) in units, or start_cell and
+    """Build a problem from its description: start and target, (x, y) in units, or start_cell and
     target_cell, cell numbers of a grid.
 
-    Raises ValueError, naming key and value, unless they lie in free space.
+    Raises ValueError, naming key and value, unless both lie in free space.
     """
-    start, target = (_end(end, description, workspace) for end in ("start", "target"))
+    start, target = (_read_end(end, description, workspace) for end in ("start", "target"))
     return Problem(name, workspace, start, target)
 
 
-def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+def _read_end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+    """Return the start or target of a description as (x, y) in units. Raises ValueError if it is
+    not free.
+    """
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
@@ -74,7 +78,9 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
     if is_blocked(build_region(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
     if grown and is_blocked(build_region(workspace), point):
+        # A path that stays at the point: its clearance is the distance to the map itself.
         distance = check(np.array([[point, point]]), build_region(home)).clearance
+        # Around corners, the grown obstacles reach a little farther than the radius.
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.shapes else ""
         raise ValueError(
@@ -95,11 +101,10 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
 def build_all(
     descriptions: Descriptions, folder: Path
 ) -> tuple[dict[str, Problem], dict[str, World]]:
-    """Problems, and the worlds of those that move, by the problem's name, from their descriptions.
-    What is random is drawn from the name of study and workspace and from the problem's numbers
-    alone.
+    """Build problems, and the worlds of those that move, by the problem's name.
 
-    Map files are looked up in the folder. Raises ValueError for a fault in any of them.
+    folder: where map files lie. Random parts follow from the names of study and workspace and the
+    problem's numbers alone. Raises ValueError for a fault in any description.
     """
     from bezierplan.workspaces.kinds import kind_of
 
@@ -113,6 +118,7 @@ def build_all(
     for name, problem in descriptions.problems.items():
         home = problem["workspace"]
         arguments = descriptions.workspaces[home], problem, f"{descriptions.study}/{home}"
+        # Problems on one map share its object, so `build_region` prepares it once.
         if home in fixed:
             workspace = fixed[home]
         elif hasattr(kinds[home], "draw"):
@@ -125,7 +131,7 @@ def build_all(
 
 
 def _measure_steps(problem: dict, grid: Grid) -> float:
-    """The length of the shortest path from cell to cell between a problem's ends."""
+    """Return the length of the shortest path from cell to cell between a problem's ends."""
     return shortest_paths.centre_path(build("first", problem, grid)).length
 
 
@@ -158,11 +164,12 @@ def write(
 
 
 def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
-    """The problems of a file, by name, in file order; those in one workspace share its object. And
-    the worlds of those that move.
+    """Read the problems of a file, by name, in file order, and the worlds of those that move.
+    Problems in one workspace share its object.
     """
     from bezierplan.running import rows
 
+    # The process that reads problems may be forked, which threads forbid.
     table = rows.read(file, threads=False).to_pylist()
     drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
@@ -179,8 +186,8 @@ def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 
 def compute_bounds(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Table":
-    """The straight line and the exact shortest path of each problem, one row each; where it moves,
-    what no robot can beat, without an octile bound.
+    """Return a table with the straight line and the exact shortest path of each problem; where it
+    moves, with a length and a time that no robot can beat, and no octile bound.
     """
     from bezierplan.running import rows
 
@@ -207,8 +214,8 @@ def compute_bounds(problems: dict[str, Problem], moving: dict[str, World]) -> "p
 
 
 def _compute_cell_bound(problem: Problem) -> float:
-    """The least length, in units, of a path over free cells with straight and diagonal steps, which
-    may pass between two occupied cells.
+    """Return the least length, in units, of a path over free cells with straight and diagonal
+    steps, which may pass between two occupied cells; nan without cells.
     """
     grid = problem.workspace
     if not isinstance(grid, Grid):

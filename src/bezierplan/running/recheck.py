@@ -1,10 +1,10 @@
-"""Are the runs of a scale what their own points say? Every stored path is judged again, and some
-runs are made again.
+"""Check that stored runs are what their own points say: judge every stored path again, and repeat
+some runs.
 
-To judge, nothing here calls a planner: a path is read from its row, and judged on the workspace of
-the file of problems, in a process that no planner was in. What no path determines, such as a
-planner's objective, is covered by the digest of each file (`rows`), and by the runs that are made
-again (`run_again`): of drives, so is their motion.
+Judging calls no planner: a path is read from its row, and judged on the workspace in the file of
+problems, in a process where no planner has run. What no path determines, such as a planner's
+objective, is covered by the digest of each file (`rows`), and by the runs that are repeated
+(`run_again`). The motion of repeated drives is checked too.
 """
 
 import hashlib
@@ -32,17 +32,17 @@ from bezierplan.schema.words import escape
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
-# Numbers of another platform or version may differ in the last bits, and places of a first
+# Another platform or library can change the last bits of a number, and the place of a first
 # collision a little more.
 _SAME = 1e-9
 _SAME_PLACE = 1e-6
 
 MADE_AGAIN = 100
-"""Of so many runs one is made again."""
+"""One run of so many is made again."""
 
 
 class Difference(NamedTuple):
-    """A file that is not what follows from runs and studies, and what of it."""
+    """A file that does not follow from runs and studies, and how it differs."""
 
     file: str
     what: str
@@ -52,18 +52,20 @@ class Difference(NamedTuple):
 
 
 def _describe_difference(file: str, run: str, column: str, old: Any, new: Any) -> Difference:
-    """Return the difference between a stored value of a run and the one that is computed again."""
+    """Describe how a stored value of a run differs from the recomputed one."""
     return Difference(file, f"{run}: {column}: stored {old}, recomputed {new}")
 
 
 def describe_error(file: str, error: Exception) -> Difference:
-    """Return what an exception says of a file."""
+    """Describe an exception about a file as a difference."""
     return Difference(file, str(error).removeprefix(f"{file}: "))
 
 
 class StoredRuns(NamedTuple):
-    """Files of runs of an experiment, each with the chunk that it is to hold. other_settings: the
-    file that defines the experiment, if it defines another one than when the runs were made.
+    """Files of runs of an experiment, each with the chunk that it should hold.
+
+    other_settings: the file that defines the experiment, if it has changed since the runs were
+    made.
     """
 
     problems: str
@@ -72,8 +74,10 @@ class StoredRuns(NamedTuple):
 
 
 class RunsVerdict(NamedTuple):
-    """faults: in order of files. files, runs: how many files of runs, and rows in them. paths:
-    different paths among these. digests: a line for each file.
+    """The verdict on stored runs.
+
+    faults: in order of files. files, runs: how many files of runs, and rows in them. paths: number
+    of different paths in these. digests: a line for each file.
     """
 
     faults: tuple[Difference, ...] = ()
@@ -84,13 +88,14 @@ class RunsVerdict(NamedTuple):
 
     @property
     def digest(self) -> str:
-        """One for all files of runs."""
+        """One digest for all files of runs."""
         return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
 
 
 def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) -> RunsVerdict:
-    """Return the verdict on tasks, in several processes. say: gets a line of progress now and
-    then.
+    """Judge all runs of tasks in several processes, and return one verdict.
+
+    say: gets a line of progress now and then.
     """
     done = []
     for each in _map(judge, tasks, processes):
@@ -101,25 +106,28 @@ def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) 
 
 
 def _map(function: Callable[[Any], Any], items: list[Any], processes: int) -> Iterator[Any]:
-    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they
-    would begin with a job's script anew.
+    """Apply a function to items in several processes, which on other systems than Linux is one:
+    there they would start the job's script anew.
     """
     if processes == 1 or sys.platform != "linux":
         yield from map(function, items)
         return
     with ProcessPoolExecutor(
-        processes, multiprocessing.get_context("fork"), end_with_parent
+        # A forked process has all modules, and a killed parent leaves none behind.
+        processes,
+        multiprocessing.get_context("fork"),
+        end_with_parent,
     ) as pool:
         yield from pool.map(function, items)
 
 
 def merge_verdicts(verdicts: Iterable[RunsVerdict]) -> RunsVerdict:
-    """Several verdicts as one."""
+    """Merge several verdicts into one."""
     return RunsVerdict(*(sum(parts[1:], parts[0]) for parts in zip(RunsVerdict(), *verdicts)))
 
 
 def check_sound(verdict: RunsVerdict) -> dict[str, Any]:
-    """What a verdict says, as plain values by name. Raises ValueError with a fault."""
+    """Return the content of a verdict as plain values. Raises ValueError with its first fault."""
     if verdict.faults:
         raise ValueError(
             f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
@@ -134,7 +142,7 @@ def write(content: dict[str, Any], file: str) -> None:
 
 
 def compute_sha256(file: File) -> str:
-    """The digest of a file; empty if it is not there."""
+    """Return the digest of a file; empty if it is not there."""
     return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
 
 
@@ -147,6 +155,7 @@ def read_versions() -> dict[str, str]:
 
 
 def _read_problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+    """Read a file of problems. Raises ValueError if it is not one."""
     try:
         return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
@@ -154,7 +163,7 @@ def _read_problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 
 def judge(task: StoredRuns) -> RunsVerdict:
-    """Return the verdict on a task."""
+    """Judge the runs of a task again."""
     try:
         by_name, moving = _read_problems(task.problems)
     except ValueError as error:
@@ -169,6 +178,7 @@ def judge(task: StoredRuns) -> RunsVerdict:
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
         kept, digest = rows.read_digest(table), rows.compute_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
+        # Rows that were changed are not judged: they could hold anything.
         if kept != digest:
             faults.append(Difference(file, "other rows than were written"))
         elif fault := rows.find_fault(table.schema, *declared):
@@ -176,6 +186,7 @@ def judge(task: StoredRuns) -> RunsVerdict:
         else:
             files[file] = table.to_pylist()
             of_file = [*_find_identity_faults(file, files[file], chunk)]
+            # A changed experiment explains all differences, so only its file is named.
             if of_file and task.other_settings:
                 what = f"experiment {chunk.experiment} is another one than that of these runs"
                 of_file = [Difference(task.other_settings, f"{what}: {File(file).parents[1]}")]
@@ -198,15 +209,18 @@ def judge(task: StoredRuns) -> RunsVerdict:
 
 
 def _list_runs(chunk: Chunk) -> list[tuple[Condition, int]]:
-    """The condition and repeat of each row of a chunk, in order."""
+    """Return the condition and the repeat of each row of a chunk, in order."""
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
 def _find_identity_faults(
     file: str, entries: list[dict[str, Any]], chunk: Chunk
 ) -> Iterator[Difference]:
-    """Whether a file has the rows that it is to have, and what is known before their runs."""
+    """Yield the differences between the rows of a file and what is known of them before
+    their runs.
+    """
     planned = [execution.identify_run(chunk, *each) for each in _list_runs(chunk)]
+    # With other rows than planned, row by row nothing matches.
     if len(entries) != len(planned):
         yield Difference(file, f"{len(entries)} rows; expected {len(planned)}")
         return
@@ -226,11 +240,14 @@ def _find_row_faults(
     moving: dict[str, World],
     cache: dict[tuple, dict[str, tuple[Any, float]]],
 ) -> Iterator[Difference]:
-    """What of a run differs from what its points say. cache: what different paths say."""
+    """Yield the differences between a row and what its points say.
+
+    cache: what paths say, so that equal ones are judged once.
+    """
     points = row["path_points"]
     try:
         if moving:
-            again = _drive_judged(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
+            again = _judge_way(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
         else:
             key = problem.name, row["path_curve"], tuple(points)
             if key not in cache:
@@ -245,8 +262,8 @@ def _find_row_faults(
 
 
 def is_same(value: float, again: float, tolerance: float) -> bool:
-    """Whether a number equals one that is computed again, up to a tolerance, relative and absolute;
-    not a number equals itself.
+    """Return whether two numbers are equal up to a tolerance, relative and absolute. A nan equals a
+    nan.
     """
     return math.isclose(value, again, rel_tol=tolerance, abs_tol=tolerance) or (
         math.isnan(value) and math.isnan(again)
@@ -254,14 +271,16 @@ def is_same(value: float, again: float, tolerance: float) -> bool:
 
 
 def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, tuple[Any, float]]:
-    """What the points of a path say, by column, with its tolerance. Raises ValueError for points
-    that are none, or of no path of the problem.
+    """Return what the points of a path say: column -> value and tolerance.
+
+    Raises ValueError for points that are no path of the problem.
     """
     path = answer.restore_path(curve, points)
     if path is None and points:
         raise ValueError("none without a curve")
     answer.check_ends(path, problem)
     length, check = answer.judge_path(path, build_region(problem.workspace))
+    # Both the stored and the recomputed distance may be off by the checker's tolerance.
     slack = 2 * (check.tolerance if path else 0.0) + _SAME
     return {
         "length": (length, _SAME),
@@ -273,10 +292,10 @@ def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, 
     }
 
 
-def _drive_judged(
+def _judge_way(
     row: dict[str, Any], points: np.ndarray, problem: Problem, world: World
 ) -> dict[str, tuple[Any, float]]:
-    """What the way of a drive says, likewise."""
+    """Return what the way of a drive says: column -> value and tolerance."""
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())
     arrived = not math.isnan(row["arrival"])
     joins = (tuple(points[0]), tuple(points[-1])) == (problem.start, problem.target)
@@ -298,9 +317,10 @@ def _drive_judged(
 def run_again(
     tasks: list[StoredRuns], wrong: Collection[str], processes: int, digest: str, every: bool
 ) -> RunsVerdict:
-    """Return how many runs were made again, and what of them differs from their rows in any bit:
-    the first of each file and one in `MADE_AGAIN`, which a digest chooses, or all. wrong: files
-    with faults, of which nothing is made again.
+    """Repeat runs, and return how many differ from their rows in any bit, as a verdict.
+
+    These are the first run of each file and one in `MADE_AGAIN`, chosen by a digest, or all. wrong:
+    files with faults, whose runs are not repeated.
     """
     again = partial(_run_file_again, digest=digest, share=1 if every else MADE_AGAIN)
     files = [
@@ -313,7 +333,7 @@ def run_again(
 
 
 def _run_file_again(of: tuple[str, str, Chunk], digest: str, share: int) -> RunsVerdict:
-    """`run_again` of a file."""
+    """Repeat runs of one file (problems, runs, chunk), as `run_again` says."""
     problem_file, file, chunk = of
     runs = _list_runs(chunk)
     numbers = [
@@ -332,7 +352,8 @@ def _run_file_again(of: tuple[str, str, Chunk], digest: str, share: int) -> Runs
     faults = []
     for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
         for name, value in rows.build_table([row], Planned, Outcome).to_pylist()[0].items():
-            # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
+            # The text of a number has all its bits; and a NaN, unlike itself as a number, has equal
+            # text.
             if repr(value) != repr(stored.get(name)):
                 faults.append(_describe_difference(file, row["id"], name, stored.get(name), value))
     return RunsVerdict(tuple(faults), runs=len(numbers))

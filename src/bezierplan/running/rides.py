@@ -1,5 +1,5 @@
-"""What a drive has found in a moving world: columns of `columns.Outcome`, some with a meaning of
-their own, and of `columns.DriveOutcome`; of times, those of `columns.DriveTimes`.
+"""The outcome of a drive: columns of `columns.Outcome`, some with a meaning of their own, of
+`columns.DriveOutcome`, and of `columns.DriveTimes`.
 """
 
 import math
@@ -17,9 +17,10 @@ from bezierplan.workspaces.worlds import ChangingCells, World
 def judge_drive(
     ride: Ride, drew: bool, problem: Problem, world: World
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What a drive has found, columns of `Outcome` and `DriveOutcome`; and its trace: x and y at
-    step 0, 1, ... and at the end of the drive, and clearance in each step, all in single precision;
-    and the plans, by the time, curve and control points of each.
+    """Judge a drive; return its columns (`Outcome`, `DriveOutcome`) and its trace.
+
+    The trace has x and y at step 0, 1, ... and at the end, the clearance in each step, all in
+    single precision, and time, curve and control points of each plan.
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
@@ -88,13 +89,13 @@ def judge_drive(
 
 
 def trace_path(ride: Ride) -> Path:
-    """The path of a drive, without its waits."""
+    """Return the path of a drive, without its waits."""
     points = ways.build_way(ride.motion.points).points
     return Path("polyline", points if len(points) > 1 else np.repeat(points, 2, axis=0))
 
 
 def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
-    """`cells.bound_plan` for the last plan of a drive; nan among circles."""
+    """Return `cells.bound_plan` for the last plan of a drive; nan among circles."""
     if not isinstance(world, ChangingCells):
         return math.nan
     time = ride.plans[-1].time
@@ -104,7 +105,10 @@ def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
 
 
 def replan_times(ride: Ride, step_seconds: float) -> DriveTimes:
-    """CPU seconds of the plans after the first."""
+    """Return statistics of the CPU seconds of all plans after the first.
+
+    step_seconds: a plan that takes longer counts as late.
+    """
     seconds = np.array([plan.seconds for plan in ride.plans[1:]])
     late = int((seconds > step_seconds).sum())
     if not len(seconds):

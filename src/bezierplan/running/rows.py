@@ -1,5 +1,5 @@
-"""Files of runs: tables whose columns have the declared types (`columns`), and that hold a digest
-of their own rows, so that a later change of any column shows.
+"""Files of runs: tables whose columns have the declared types (`columns`). Each holds a digest of
+its own rows, so that a later change of any column shows.
 """
 
 import hashlib
@@ -25,28 +25,30 @@ _TYPES = {
 
 
 def build_table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
-    """Rows as a table: declared columns, which every row must have, in their types, others in that
-    of their values.
+    """Build a table from rows. Declared columns have their types, others that of their values.
 
     Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError
     for a row that lacks a declared column, and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a
     value that does not have its type.
     """
-    types = {name: _TYPES[kind] for name, (kind, _) in columns.declared(*declared).items()}
+    types = {name: _TYPES[kind] for name, (kind, _) in columns.read_columns(*declared).items()}
     names = dict.fromkeys(name for row in rows for name in row)
     return pa.table(
         {
             name: pa.array([row[name] for row in rows], types[name])
             if name in types
             else pa.array([row.get(name) for row in rows])
+            # A table without rows still has its columns.
             for name in (names or types)
         }
     )
 
 
 def find_fault(schema: pa.Schema, *declared: type) -> str:
-    """The first declared column that a file lacks or has in another type, in words, or empty."""
-    for name, (kind, _) in columns.declared(*declared).items():
+    """Describe the first declared column that a file lacks or has in another type; empty if there
+    is none.
+    """
+    for name, (kind, _) in columns.read_columns(*declared).items():
         if name not in schema.names:
             return f"no column {name}"
         found = schema.field(name).type
@@ -62,12 +64,15 @@ def write(table: pa.Table, file: str) -> None:
 
 
 def read(file: str, threads: bool = True) -> pa.Table:
-    """The table of a Parquet file; without pyarrow's threads this process can be forked. Raises
-    ValueError, naming it, unless it is there and whole.
+    """Read the table of a Parquet file. Raises ValueError, naming the file, unless it is there and
+    whole.
+
+    threads: pyarrow's; without them, this process can still be forked.
     """
     if not Path(file).is_file():
         raise ValueError(f"{file}: is not there; start again: the workflow makes it")
     try:
+        # Read here and not by pyarrow, which would start threads for it.
         content = pa.BufferReader(Path(file).read_bytes())
         with parquet.ParquetFile(content, pre_buffer=False) as source:
             return source.read(use_threads=threads)
@@ -76,7 +81,7 @@ def read(file: str, threads: bool = True) -> pa.Table:
 
 
 def describe_misplaced(file: str, what: str) -> ValueError:
-    """The exception for a file of results that is not what belongs in its place."""
+    """Return the exception for a file of results that does not belong in its place."""
     return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
@@ -86,7 +91,9 @@ def read_digest(table: pa.Table) -> str:
 
 
 def compute_digest(table: pa.Table) -> str:
-    """A hash over a table's columns in order of name: of all bits, whatever the file's layout."""
+    """Return a digest of all bits of a table, by columns in order of name, whatever the file's
+    layout.
+    """
     digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()
@@ -97,7 +104,7 @@ def compute_digest(table: pa.Table) -> str:
 
 
 def _yield_parts(column: pa.Array) -> list[bytes]:
-    """The content of a column as bytes."""
+    """Return the content of a column as bytes."""
     if pa.types.is_list(column.type):
         values = column.flatten()
         # Without values, any type of them is the same content.
@@ -111,6 +118,7 @@ def _yield_parts(column: pa.Array) -> list[bytes]:
         return [
             str(column.type).encode(),
             missing.tobytes(),
+            # The bytes behind a missing value are arbitrary.
             column.fill_null(0).to_numpy(zero_copy_only=False).tobytes(),
         ]
     return [json.dumps(column.to_pylist()).encode()]

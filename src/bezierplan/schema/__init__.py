@@ -1,1 +1,1 @@
-"""What every floor may use: models of mappings (`model`), and YAML read strictly (`checked`)."""
+"""Files of studies read strictly: YAML, frozen models of mappings, and one-line faults."""

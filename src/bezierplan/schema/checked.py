@@ -1,4 +1,4 @@
-"""YAML files read strictly; a fault is one line with its place."""
+"""Read YAML files strictly; a fault is one line with its place."""
 
 import difflib
 import re
@@ -12,8 +12,10 @@ from bezierplan.schema.words import escape
 
 
 class Fault(ValueError):
-    """A problem in a file that the user must fix, in one line: no character from the file can break
-    it. lines: that of every fault that was found; the first is its text.
+    """A problem in a file that the user must fix, in one line that no character from the file can
+    break.
+
+    lines: one for each fault that was found; the first is the text of the exception.
     """
 
     def __init__(self, *lines: str) -> None:
@@ -22,8 +24,8 @@ class Fault(ValueError):
 
 
 class _Loader(yaml.CSafeLoader):
-    """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number;
-    a key may occur only once.
+    """A loader of YAML 1.2's plain scalars: `no` and `0_15` are words, `010` is ten, `1e-3` is a
+    number. A key may occur only once.
     """
 
 
@@ -31,6 +33,7 @@ _Loader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ("null", r"|null|~", ["", "n", "~"]),
     ("bool", r"true|false", list("tf")),
+    # A whole number of 18 digits fits into 64 bits.
     ("int", r"[-+]?[0-9]{1,18}", list("-+0123456789")),
     (
         "float",
@@ -45,6 +48,9 @@ _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.v
 
 
 def _build_mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
+    """Return a mapping of YAML. Raises MarkedYAMLError for a key that is no name or is
+    given twice.
+    """
     content = {}
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -64,13 +70,16 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _build_mapping)
 
 
 def read(file: Path, location: str | None = None) -> Any:
-    """The content of a YAML file. Raises Fault, beginning with the place (default: file name)."""
+    """Read a YAML file and return its content. Raises Fault, beginning with the location (default:
+    the file's name).
+    """
     return parse(read_text(file, location or str(file)), location or str(file))
 
 
 def read_text(file: Path, location: str) -> str:
-    """The text of a file. Raises Fault, beginning with a location, unless it is one."""
+    """Read the text of a file. Raises Fault, beginning with a location, if that fails."""
     try:
+        # Some editors begin a file with a byte order mark.
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise Fault(f"{location}: cannot be read; expected text in UTF-8") from None
@@ -79,7 +88,7 @@ def read_text(file: Path, location: str) -> str:
 
 
 def parse(text: str, location: str) -> Any:
-    """The content of YAML text, read strictly. Raises Fault, beginning with a location."""
+    """Parse YAML text strictly and return its content. Raises Fault, beginning with a location."""
     try:
         return yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
@@ -91,8 +100,9 @@ def parse(text: str, location: str) -> Any:
 
 
 def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") -> None:
-    """Raise Fault, beginning with a location, for a name that is not among those known. home: the
-    file of a study's folder in which it would stand.
+    """Raise Fault, beginning with a location, for a name that is not among those known.
+
+    home: the file of a study's folder that could define it.
     """
     names = list(names)
     if name not in names:
@@ -103,19 +113,19 @@ def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") 
 
 
 def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None:
-    """Raise Fault, beginning with a location, for a word that is not among some names."""
+    """Raise Fault, beginning with a location, for the first word that is not among some names."""
     names = [*names]
     for word in words:
         check_known(word, names, location)
 
 
 def suggest_closest(word: Any, names: Iterable[Any]) -> str:
-    """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
-    about an unknown one.
+    """Return `; did you mean ...?` with the known words, or of many the most similar, to end a
+    sentence about an unknown one.
     """
     words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)
-    # Of another meaning, but of the same unit, such as cpu_s for wall_s.
+    # A word of the same unit may be meant, such as cpu_s for wall_s.
     near = near or [each for each in words if str(word).endswith(f"_{each.rpartition('_')[2]}")]
     hint = f"; did you mean {near[0]}?" if near else ";"
     if len(words) > 40:

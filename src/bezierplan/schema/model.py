@@ -1,7 +1,7 @@
 """Mappings in files as frozen classes, one per kind of mapping, whose fields are the keys.
 
-They are built with pydantic, which reports every fault as a record of kind, place and input. This
-module makes of it one line that names place, key, value and what would be right. The description of
+They are built with pydantic, which reports each fault as a record of kind, place and input. This
+module makes one line of it that names place, key, value and what would be right. The description of
 a field is written once and serves three purposes: the message about a wrong value, the tables of
 config/README.md, and the reader of the class.
 """
@@ -62,6 +62,7 @@ class Model(BaseModel):
             return handler(value)
         except ValidationError as error:
             faults = error.errors(include_url=False)
+            # A fault inside the value has a place and a message of its own.
             if any(fault["loc"] for fault in faults):
                 raise
             raise build_error(
@@ -69,7 +70,7 @@ class Model(BaseModel):
             ) from None
 
     def plain(self, *without: str) -> dict[str, Any]:
-        """The mapping as written, in plain values; some keys can be left out."""
+        """Return the mapping as written, in plain values, without some keys."""
         return self.model_dump(
             exclude_unset=True,
             by_alias=True,
@@ -79,7 +80,7 @@ class Model(BaseModel):
         )
 
     def but(self, **changed: Any) -> Self:
-        """A copy with changed values, which are not checked."""
+        """Return a copy with changed values, which are not checked."""
         return self.model_copy(update=changed)
 
 
@@ -87,12 +88,12 @@ M = TypeVar("M", bound=Model)
 
 
 def list_keys(model: type[Model]) -> dict[str, FieldInfo]:
-    """Keys of a mapping -> what they hold."""
+    """Return the keys of a mapping, each with its field."""
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
 def parse(model: type[M], content: Any, location: str) -> M:
-    """The content of a file as a model. Raises Fault, beginning with a location."""
+    """Return the content of a file as a model. Raises Fault, beginning with a location."""
     sound, faults, _ = parse_sound_part(model, content, location)
     if faults:
         raise Fault(*faults)
@@ -100,14 +101,15 @@ def parse(model: type[M], content: Any, location: str) -> M:
 
 
 def parse_sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
-    """What is sound of the content of a file, the faults of the rest, and the names of the entries
-    that are left out for them. Raises Fault if too little is left.
+    """Return the sound part of a file's content as a model, the faults of the rest, and the names
+    of the entries that are left out for them. Raises Fault if too little is left.
     """
     try:
         return model.model_validate(content), [], []
     except ValidationError as error:
         fault = describe_fault(error, location)
         places = {each["loc"][:2] for each in error.errors(include_url=False)}
+    # From the end, so that the numbers of entries in a list stay valid.
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
     try:
@@ -117,8 +119,8 @@ def parse_sound_part(model: type[M], content: Any, location: str) -> tuple[M, li
 
 
 def describe_fault(error: ValidationError, *location: str) -> Fault:
-    """All faults of a model, those that others may follow from first, each with a location and the
-    keys that lead to it.
+    """Describe all faults of a model in lines, each with a location and the keys that
+    lead to it.
     """
     # After a key that is itself wrong, pydantic puts `[key]`.
     lines = [
@@ -129,22 +131,25 @@ def describe_fault(error: ValidationError, *location: str) -> Fault:
         ]
         for fault in error.errors(include_url=False)
     ]
+    # Faults from which others may follow come first: the first line is the text of the exception.
     lines.sort(key=lambda line: (": unknown key" not in line[-1], len(line)))
     return Fault(*map(": ".join, lines))
 
 
 def build_error(text: str) -> PydanticCustomError:
-    """An error with this text at the end of the line, unchanged even if it contains braces."""
+    """Return an error with this text at the end of the line, unchanged even if it contains
+    braces.
+    """
     return PydanticCustomError("wrong", "{text}", {"text": text})
 
 
 def build_expectation(text: str) -> PydanticCustomError:
-    """An error of a value in the place of which this was expected."""
+    """Return an error about a value in whose place this was expected."""
     return PydanticCustomError("expected", "{text}", {"text": text})
 
 
 def show_value(value: Any) -> str:
-    """A value as a message shows it."""
+    """Return a value in the form that a message shows."""
     return textwrap.shorten(repr(value), 100, placeholder="...")
 
 
@@ -162,11 +167,14 @@ _EXPECTED = {
     "less_than_equal": "a number of at most {le}",
     "too_short": "a list of at least {min_length}",
 }
-"""By the kind of a fault in a value that has no description."""
+"""pydantic's name of a fault -> what is expected of a value without a description."""
 
 
 def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
-    """The end of a message, by a pydantic record; for a field's value, by its description."""
+    """Return the end of a message for one of pydantic's faults.
+
+    field: its description says what is expected, if it is given.
+    """
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
@@ -184,7 +192,9 @@ def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
 
 
 def build_value_type(fits: Callable[[Any], bool], form: str) -> PlainValidator:
-    """A type of single value, kept as written."""
+    """Return a type of single value that is kept as written. form: what is expected, for
+    messages.
+    """
 
     def check(entry: Any) -> Any:
         if not fits(entry):
@@ -195,34 +205,35 @@ def build_value_type(fits: Callable[[Any], bool], form: str) -> PlainValidator:
 
 
 def is_number(entry: Any) -> bool:
-    """Whether it is a finite number, and not a boolean."""
+    """Return whether an entry is a finite number, and not a boolean."""
     return isinstance(entry, int | float) and not isinstance(entry, bool) and abs(entry) <= LARGEST
 
 
 def is_line(entry: Any) -> bool:
-    """Whether it is one line of text that is not blank."""
+    """Return whether an entry is one line of text that is not blank."""
     return isinstance(entry, str) and bool(entry.strip()) and entry.isprintable()
 
 
 def _keep_as_written(entry: Any, check: Callable[[Any], Any]) -> Any:
+    """Check an entry, and return it unchanged."""
     check(entry)
     return entry
 
 
 MOST = 1_000_000
-"""Largest count: of repeats, of layouts, of cells."""
+"""Largest count: of repeats, layouts or cells."""
 LARGEST = 1e12
 """Largest coordinate, length or weight."""
 
 
 def build_number_type(**limits: float | None) -> Any:
-    """A type of number within limits: `gt`, `ge`, `le`."""
+    """Return a type of number within limits: `gt`, `ge`, `le`."""
     given: Any = {"ge": -LARGEST, "le": LARGEST} | limits
     return Annotated[float, Field(**given), WrapValidator(_keep_as_written)]
 
 
 def limit_whole(low: int, high: int) -> Any:
-    """A limit on a whole number."""
+    """Return the limits of a whole number, as a field."""
     return Field(ge=low, le=high)
 
 
@@ -251,7 +262,7 @@ Setting = Annotated[
 
 
 def match_text(pattern: str, form: str) -> PlainValidator:
-    """A type of text that a regular expression matches as a whole."""
+    """Return a type of text that a regular expression matches as a whole."""
     return build_value_type(
         lambda entry: isinstance(entry, str) and bool(re.fullmatch(pattern, entry)),
         form,
@@ -268,13 +279,13 @@ Name = Annotated[
 
 
 def convert_to_list(entry: Any) -> list:
-    """A value, or a list of values, as a list."""
+    """Return a list as it is, and any other value as a list of one."""
     return entry if isinstance(entry, list) else [entry]
 
 
 def identify(entry: Any) -> str:
-    """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are
-    not; also inside lists.
+    """Return a text that equal values share, and no others. 20 and 20.0 are one number, true and 1
+    are not; also inside lists.
     """
     if isinstance(entry, list):
         return f"[{', '.join(map(identify, entry))}]"
@@ -282,8 +293,9 @@ def identify(entry: Any) -> str:
 
 
 def build_list_type(item: Any, *, least: int = 1, single: bool = False) -> Any:
-    """A type of list without duplicates, or with `single` also of a lone item without a list, kept
-    as written.
+    """Return a type of list without duplicates.
+
+    least: smallest length. single: also allow one item without a list, which is kept as written.
     """
     distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_check_distinct)]
     if not single:
@@ -292,7 +304,9 @@ def build_list_type(item: Any, *, least: int = 1, single: bool = False) -> Any:
 
 
 def _build_either_type(kind: type, of_kind: Any, other: Any) -> PlainValidator:
-    """A type of value that is of one type if it is a list, or a mapping, and of another if not."""
+    """Return a type of value that is `of_kind` for a list or mapping (`kind`), and `other` for the
+    rest.
+    """
     as_kind, as_other = TypeAdapter(of_kind), TypeAdapter(other)
     return PlainValidator(
         lambda entry: (as_kind if isinstance(entry, kind) else as_other).validate_python(
@@ -302,6 +316,7 @@ def _build_either_type(kind: type, of_kind: Any, other: Any) -> PlainValidator:
 
 
 def _check_distinct(entry: list) -> list:
+    """Return a list, or raise an error if it has an item twice."""
     texts = [identify(each) for each in entry]
     for number, text in enumerate(texts):
         if text in texts[:number]:
@@ -310,11 +325,11 @@ def _check_distinct(entry: list) -> list:
 
 
 Values = build_list_type(Setting, single=True)
-"""A value of a column or a list of them."""
+"""A value of a column, or a list of them."""
 
 
 def build_choice_type(key: str, models: dict[str, type[Model]]) -> PlainValidator:
-    """A type of mapping in which the value of one key selects the model."""
+    """Return a type of mapping in which the value of one key selects the model."""
 
     def check(entry: Any) -> Model:
         if not isinstance(entry, dict):
@@ -330,7 +345,7 @@ def build_choice_type(key: str, models: dict[str, type[Model]]) -> PlainValidato
 
 
 def build_mapping_type(mapping: Any, other: Any) -> PlainValidator:
-    """A type of value that is either a mapping of one type, or of another type."""
+    """Return a type of value that is a mapping of one type, or a value of another type."""
     return _build_either_type(dict, mapping, other)
 
 
@@ -338,7 +353,7 @@ def build_mapping_type(mapping: Any, other: Any) -> PlainValidator:
 
 
 class Names(NamedTuple):
-    """Marks a field whose text names something: a metric, a column, a method, ...; `find_names`
+    """Marks a field whose text names something: a metric, a column, a method, ... `find_names`
     finds these names, and `checks` looks them up.
     """
 
@@ -348,9 +363,9 @@ class Names(NamedTuple):
 Metric = Annotated[Name, Names("metric")]
 Statistic = Annotated[Name, Names("statistic")]
 Column = Annotated[Name, Names("column")]
-"""A column that is known before a run: runs are told apart by it."""
+"""A column that is known before a run and so identifies runs."""
 NumberColumn = Annotated[Name, Names("number column")]
-"""Such a column of numbers."""
+"""A column of numbers that is known before a run."""
 Quantity = Annotated[Name, Names("quantity")]
 """Any column of numbers."""
 Repeat = Annotated[Whole, Names("repeat")]
@@ -360,7 +375,7 @@ Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]  # type: ignore[valid-type]
 Arguments = dict[Name, Any]
-"""Keyword-only arguments of a study's function, which `checks` compares with annotations."""
+"""Keyword-only arguments of a study's function; `checks` compares them with its annotations."""
 ARGUMENTS = (
     "the function's keyword-only arguments, by name: "
     "values that the paper gives, or that were chosen"
@@ -370,8 +385,11 @@ ARGUMENTS = (
 def find_names(
     model: Model, path: tuple[str, ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Every name in a model that is defined elsewhere: the keys to it, what it names, the name."""
+    """Yield each name in a model that is defined elsewhere: the keys that lead to it, what it
+    names, and the name itself.
+    """
     for key, field in type(model).model_fields.items():
+        # Defaults name nothing that a file could have wrong.
         if key in model.model_fields_set:
             yield from _find_names(
                 getattr(model, key), field.annotation, field.metadata, (*path, key)
@@ -381,6 +399,7 @@ def find_names(
 def _find_names(
     content: Any, annotation: Any, metadata: Any, path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], str, Any]]:
+    """Yield the names in a value of a field, as `find_names` does."""
     if typing.get_origin(annotation) is Annotated:
         metadata, annotation = annotation.__metadata__, annotation.__origin__
     parts = typing.get_args(annotation) or (None,)

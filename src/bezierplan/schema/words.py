@@ -1,4 +1,4 @@
-"""Words of unknown origin as one line that no terminal and no log is harmed by."""
+"""Turn words of unknown origin into one line that harms no terminal and no log."""
 
 import traceback
 from pathlib import Path
@@ -6,12 +6,13 @@ from pathlib import Path
 from bezierplan.machine.modules import USERS
 
 LONGEST = 500
-"""Characters of the longest text of an exception that is shown."""
+"""Most characters of an exception's text that are shown."""
 
 
 def escape(text: str, most: int | None = None) -> str:
-    """A text with its control characters escaped, line breaks too, and cut after `most` characters,
-    which is told.
+    """Return a text with its control characters escaped, line breaks too.
+
+    most: after so many characters the text is cut, and the result says so.
     """
     cut = (
         text if most is None or len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
@@ -20,8 +21,8 @@ def escape(text: str, most: int | None = None) -> str:
 
 
 def describe_in_one_line(error: BaseException) -> str:
-    """An exception as one line: the line of a user's file that it comes from, if it does; its class
-    and its text, which foreign code may have written.
+    """Describe an exception in one line: its class and text, which foreign code may have written,
+    and the line of a user's file that it comes from, if it does.
     """
     text = " ".join(str(error).split())
     places = [
@@ -30,4 +31,5 @@ def describe_in_one_line(error: BaseException) -> str:
         if str(frame.f_globals.get("__name__")).startswith(USERS)
     ]
     name = "sys.exit" if isinstance(error, SystemExit) else type(error).__name__
+    # The innermost line of a user's file is the one to look at.
     return escape("".join(places[-1:]) + (f"{name}: {text}" if text else name), LONGEST)

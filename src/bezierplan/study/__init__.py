@@ -1,8 +1,6 @@
-"""Studies: their files as frozen classes, a check for every fault before the first job, and the
-resulting jobs.
+"""Studies: their files as frozen classes, the checks before the first job, and the resulting jobs.
 
-`experiments`, `artefacts` and `claims` hold the models of files whose parts have no other home;
-`definition` the study that they form; `reading`, `checks`, `design` and `published` find every
-fault; `jobs`, `page` and `alternatives` define what is made, `stored` what a folder of results is
-to hold.
+The models of a study's files are in `experiments`, `artefacts` and `claims`, and `definition` joins
+them into a study. `reading` reads the files; `checks`, `design` and `published` check them. `jobs`,
+`page` and `alternatives` derive the jobs, and `stored` lists the files that these jobs write.
 """

@@ -1,5 +1,5 @@
-"""What a paper leaves open: a study under other values of its assumptions is a study again, so that
-all jobs can be made of it.
+"""Studies under other values of their assumptions. Such a study is a `Study` again, so the same
+functions make its jobs.
 """
 
 import itertools
@@ -21,14 +21,16 @@ from bezierplan.study.experiments import Experiment
 DEFAULT = "default"
 
 MOST_REPEATS = 1000
-"""Repeats of a method under each condition with which readings are judged, at most."""
+"""Most repeats of a method under a condition when claims are judged under a reading."""
 
 
 def find_default(study: Study, assumption: AssumptionEntry) -> Any:
-    """Return the value that runs use where an assumption leaves it to a setting: one for the
-    methods without a value of their own, or each of those that it names.
+    """Return the value that runs use for an assumption.
+
+    If the assumption governs a setting, this is the value that its methods use; a dict, method ->
+    value, if the assumption names methods.
     """
-    setting, methods = assumption.setting, study.concerned(assumption)
+    setting, methods = assumption.setting, study.list_governed_methods(assumption)
     if setting is None:
         return assumption.default
     used = {}
@@ -36,14 +38,14 @@ def find_default(study: Study, assumption: AssumptionEntry) -> Any:
         settings = [study.problems[problem].settings for problem in assumption.problems]
         values = [each[setting] for each in settings if setting in each]
         open_there = values and setting not in study.methods[name].settings
-        used[name] = values[0] if open_there else study.resolved(name)[setting]
+        used[name] = values[0] if open_there else study.resolve_settings(name)[setting]
     shared = [used[name] for name in methods if setting not in study.methods[name].settings]
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
 def apply_values(study: Study, values: dict[str, Any]) -> Study:
-    """Return the study with other values of some assumptions, by id. On a map that they change, no
-    best known path counts.
+    """Return the study with other values of some assumptions (id -> value). On a map that they
+    change, the best known path length no longer counts.
     """
     workspaces, problems = dict(study.workspaces), dict(study.problems)
     for assumption in study.assumptions:
@@ -53,13 +55,15 @@ def apply_values(study: Study, values: dict[str, Any]) -> Study:
                 workspaces[name] = type(workspaces[name]).model_validate(plain)
     for name, problem in study.problems.items():
         home = problem.workspace
+        # A workspace that no value changes is still the same object.
         if problem.reference and workspaces[home] is not study.workspaces[home]:
+            # The reference was measured on the unchanged map, so a gap to it would mean nothing.
             problems[name] = problem.but(reference=math.nan)
     return study.but(values=values, workspaces=workspaces, problems=problems)
 
 
 def describe_values(study: Study, values: dict[str, Any]) -> str:
-    """Return what some values of assumptions change, in words."""
+    """Describe in one line what other values of assumptions (id -> value) change."""
     details = {each.id: each.detail for each in study.assumptions}
     return "; ".join(f"{details[name]}: {value}" for name, value in values.items())
 
@@ -69,13 +73,17 @@ def describe_values(study: Study, values: dict[str, Any]) -> str:
 
 
 def is_judged(claim: Claim) -> bool:
-    """Return whether a reading can turn a claim: its primary checks rest on runs, not on times."""
+    """Return whether a claim can change under a reading: its primary checks rest on runs, and on no
+    times.
+    """
     primary = [with_work(check)[0] for check in claim.checks if check.primary]
     return all(check.experiments and not check.timed for check in primary)
 
 
 def select_claims(study: Study, reading: ReadingEntry) -> list[Claim]:
-    """Return the claims that are judged under a reading."""
+    """Return the claims that are judged under a reading: those that it names, otherwise the main
+    ones.
+    """
     return [
         claim
         for claim in study.claims
@@ -84,12 +92,13 @@ def select_claims(study: Study, reading: ReadingEntry) -> list[Claim]:
 
 
 def build_joint_readings(study: Study) -> dict[str, Study]:
-    """Return the study under each joint reading, with the claims that are judged under it, by the
-    name of the folder of its results.
+    """Return the study under each joint reading, by the folder of its results. Each has only the
+    claims that are judged under that reading.
     """
     experiments = {
         name: content.but(
             repeats=_limit(content.repeats, MOST_REPEATS),
+            # A chunk always runs whole, so it may not be larger than the repeats.
             chunk=_limit(content.chunk, MOST_REPEATS),
         )
         for name, content in study.experiments.items()
@@ -102,9 +111,11 @@ def build_joint_readings(study: Study) -> dict[str, Study]:
 
 
 def build_single_alternatives(study: Study) -> dict[str, Study]:
-    """Return the study with the claims of which a figure draws all alternatives, by default and
-    under each alternative that no sentence excludes and that changes some of their runs, with few
-    runs, by the name of the folder of its results; nothing without such a figure.
+    """Return the study by default and under each single alternative, by the folder of its results.
+
+    They have few runs (`limit_runs`) and only the claims that a figure draws; without such a figure
+    the result is empty. An alternative is left out if a sentence of the paper excludes it, or if it
+    changes none of these runs.
     """
     drawn = {claim for figure in study.figures.values() for claim in figure.claims}
     claims = [claim for claim in study.claims if claim.id in drawn]
@@ -117,26 +128,28 @@ def build_single_alternatives(study: Study) -> dict[str, Study]:
     return {DEFAULT: few} | {
         name_folder(each.id, value): apply_values(few, {each.id: value})
         for each in study.assumptions
-        if methods.intersection(study.concerned(each)) or homes.intersection(each.workspace)
+        if methods.intersection(study.list_governed_methods(each))
+        or homes.intersection(each.workspace)
         if not each.excluded_by
         for value in each.alternatives
     }
 
 
 def name_folder(identity: str, value: Any) -> str:
-    """Return the name of the folder of the results under an alternative."""
+    """Return the name of the folder with the results under an alternative."""
     return re.sub(r"[^\w.+-]", "_", f"{identity}_{value}")
 
 
 def keep_claims(study: Study, claims: list[Claim]) -> Study:
-    """Return the study with some claims alone, of which it has the primary checks in the primary
-    variant, and with no other runs than these checks name.
+    """Return the study with some of its claims alone, reduced to their primary checks in the
+    primary variant, and with only the runs that these checks name.
     """
     claims = [
         claim.in_primary_variant().but(checks=[check for check in claim.checks if check.primary])
         for claim in claims
     ]
     experiments = dict(study.experiments)
+    # A column of the primary variant that no check names becomes one more condition of `where`.
     checks = [check for claim in claims for check in in_variant(claim.checks, *variants(claim) * 2)]
     for name in list_experiments(claims):
         naming = [check for check in checks if name in check.experiments]
@@ -145,9 +158,14 @@ def keep_claims(study: Study, claims: list[Claim]) -> Study:
 
 
 def _keep_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) -> Experiment:
-    """Return an experiment with what checks name of its problems, methods and varied values."""
+    """Return an experiment with only those of its problems, methods and varied values that checks
+    name.
+    """
 
     def is_named(**columns: Any) -> bool:
+        """Return whether a check selects runs with these values; a check selects all values of a
+        column that its `where` leaves out.
+        """
         wheres = [getattr(check, "where", {}) for check in checks]
         return any(
             all(value in convert_to_list(where.get(name, value)) for name, value in columns.items())
@@ -155,6 +173,9 @@ def _keep_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) ->
         )
 
     def is_compared(method: str) -> bool:
+        """Return whether a check needs the runs of a method: it names the method, or compares a
+        method with all others.
+        """
         return any(
             check.cells != "method"
             or "rest" in check.groups_named
@@ -179,8 +200,8 @@ def _keep_checks(study: Study, content: Experiment, checks: list[ClaimCheck]) ->
 
 
 def limit_runs(study: Study) -> Study:
-    """Return the study with `FEW` runs of each method under each condition, or in each field that
-    is drawn at random, at most.
+    """Return the study with at most `FEW` runs of each method under each condition; all layouts of
+    a random field count together.
     """
     problems = {
         name: problem.but(layouts=_limit(problem.layouts, FEW)) if problem.layouts else problem
@@ -190,6 +211,7 @@ def limit_runs(study: Study) -> Study:
     for name, content in study.experiments.items():
         fields = [problems[each].layouts for each in content.problems if problems[each].layouts]
         layouts = max((max(each.values()) for each in fields), default=1)
+        # One run on each layout remains, even where there are more layouts than runs are wanted.
         most = max(1, FEW // layouts)
         experiments[name] = content.but(
             repeats=_limit(content.repeats, most), chunk=_limit(content.chunk, most), fewer={}
@@ -198,12 +220,13 @@ def limit_runs(study: Study) -> Study:
 
 
 def _limit(numbers: dict[str, int], most: int) -> dict[str, int]:
+    """Return numbers by scale, each at most `most`."""
     return {scale: min(number, most) for scale, number in numbers.items()}
 
 
 def list_experiments(claims: Iterable[Claim]) -> list[str]:
-    """Return the names of the experiments whose runs decide claims, once each; variants may name
-    more.
+    """Return the names of the experiments whose runs decide some claims, including those that only
+    a variant names.
     """
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(

@@ -1,5 +1,7 @@
-"""Models of `artefacts.yaml`: tables and figures, and how names are printed; of `layout.yaml`; and
-of the configuration. Kinds of table and figures are defined next to the code that makes them.
+"""Models of `artefacts.yaml` (tables, figures and printed names), `layout.yaml` and the
+configuration.
+
+Kinds of table and of figure are defined beside the code that makes them.
 """
 
 from typing import Annotated, Any, Literal
@@ -24,7 +26,7 @@ from bezierplan.workspaces.kinds import FileName
 
 
 class ArtefactsFile(Model):
-    """The file."""
+    """The content of `artefacts.yaml`."""
 
     labels: dict[Line, Line] = Field(
         {},
@@ -45,7 +47,7 @@ class ArtefactsFile(Model):
 
 
 class LayoutFile(Model):
-    """The file."""
+    """The content of `layout.yaml`."""
 
     layout: dict[Name, Layout] = Field(
         description="name of a table or figure of a paper → how the paper prints it"
@@ -53,7 +55,7 @@ class LayoutFile(Model):
 
 
 class ConfigFile(Model):
-    """The file `config/config.yaml`, or what `--config` gives."""
+    """The content of `config/config.yaml`, or of `--config`."""
 
     studies: build_list_type(Line) = Field(
         description="a list of studies, each the name of a folder in `config/studies` or a path"

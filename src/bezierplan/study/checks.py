@@ -1,5 +1,5 @@
-"""Checks across the files of a study: names defined in other files, planners and their settings,
-free places, matching published numbers. Every fault is one line, and all are found at once.
+"""Checks across the files of a study: names that other files define, planners and their settings,
+free places, matching published numbers. Each fault is one line, and all are found in one pass.
 """
 
 import difflib
@@ -44,16 +44,16 @@ from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.problem import Problem
 
 RESERVED = columns.TAKEN.union(columns.WORDS) - {"generations"}
-"""Names that no setting can have. The column `generations` holds the number actually performed, so
-a setting of that name adds nothing.
+"""Names that no setting can have. `generations` is allowed: the column holds the number actually
+performed, so a setting of that name adds nothing.
 """
 
 
 class Checks:
-    """The checks of a study whose files are each valid on their own. Their methods raise a fault
-    without the place where it stands.
+    """Check a study whose files are each valid on their own. The methods raise Fault without the
+    place, which `at` adds.
 
-    invalid: names of entries that are left out, because they are not valid.
+    invalid: names of entries that are left out because they are not valid.
     """
 
     def __init__(self, study: Study, invalid: Iterable[str] = ()) -> None:
@@ -62,8 +62,8 @@ class Checks:
         self.words = {"generation"}
         self._place = ()
         self.design = cache(lambda experiment: build_design(self.study, experiment))
-        self.runs = cache(self._runs)
-        self.built = cache(self._built)
+        self.runs = cache(self._join_runs)
+        self.build_problem = cache(self._build_problem)
         self.known = {
             "experiment": [*study.experiments],
             "workspace": study.workspaces,
@@ -77,15 +77,17 @@ class Checks:
             "world": study_code.part_of(study.code_for("worlds")),
             "drawing": study_code.part_of(study.code_for("panels")),
             "statistic": statistics.STATISTICS,
-            "compared": study.with_published(),
+            "compared": study.find_published_tables(),
             "artefact": {**study.tables, **study.figures},
-            "printed table": [Path(file).stem for file in study.published_files()],
+            "printed table": [Path(file).stem for file in study.list_published_files()],
             "claim": [claim.id for claim in study.claims],
         }
 
     @contextmanager
     def at(self, *place: str) -> Iterator[None]:
-        """A place in the files; a fault there ends only what is checked there."""
+        """Name a place in the files for the faults of a block. A fault ends the block, not the
+        checks after it.
+        """
         outer, self._place = self._place, (*self._place, *place)
         try:
             yield
@@ -102,8 +104,13 @@ class Checks:
         finally:
             self._place = outer
 
-    def each(self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]) -> None:
-        """Check the entries of a section of a file, and leave out those that have a fault."""
+    def check_entries(
+        self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]
+    ) -> None:
+        """Check each entry of a section of a file with `work`, and drop the entries that have a
+        fault.
+        """
+        # A copy, because entries with a fault leave the mapping.
         for name, entry in [*entries.items()]:
             with self.at(section, name):
                 work(name, entry)
@@ -111,22 +118,25 @@ class Checks:
                 entries.pop(name)
 
     def check(self) -> list[str]:
-        """All faults, one line each."""
+        """Return all faults, one line each."""
         study = self.study
         with self.at(shorten_path(study.folder / "experiments.yaml")):
-            self.each("methods", study.methods, self.method)
+            # Methods come first: all that follows loads their planners.
+            self.check_entries("methods", study.methods, self.check_method)
             # A planner that has a fault may have any settings.
             self.complete = not self.invalid
             with self.at():
-                self.shared_settings()
+                self.check_shared_settings()
             if self.complete:
-                self.each("methods", {**study.methods}, lambda name, _: self.settings(study, name))
-            self.each("workspaces", study.workspaces, self.workspace)
-            self.each("problems", study.problems, self.problem)
-            self.each("experiments", study.experiments, self.experiment)
+                self.check_entries(
+                    "methods", {**study.methods}, lambda name, _: self.check_settings(study, name)
+                )
+            self.check_entries("workspaces", study.workspaces, self.check_workspace)
+            self.check_entries("problems", study.problems, self.check_problem)
+            self.check_entries("experiments", study.experiments, self.check_experiment)
             if compared := study.baseline_comparison:
                 with self.at("baseline_comparison"):
-                    self.names(compared)
+                    self.check_names(compared)
                     for name in compared.experiments:
                         check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
                     for name, family in compared.families.items():
@@ -136,22 +146,33 @@ class Checks:
                             check_all(family.problems, listed, "problems")
         with self.at():
             named = " ".join(read_text(file, "") for file in study.folder.glob("*.yaml"))
-            for file in map(Path, study.published_files()):
+            # A file that no table names would never be compared, without a word.
+            for file in map(Path, study.list_published_files()):
                 header = {*next(iter(published.read(file).values()))}
                 if header.issuperset(published.COLUMNS) and file.stem not in named:
                     raise Fault(f"{file}: no table names it; expected published: {file.name}")
             if file := study.verdict_file():
                 texts.read(file)
         with self.at(shorten_path(study.folder / "artefacts.yaml")):
-            self.each("tables", study.tables, self.table)
-            self.each("figures", study.figures, self.figure)
-            self.prints()
+            self.check_entries("tables", study.tables, self.check_table)
+            self.check_entries("figures", study.figures, self.check_figure)
+            self.check_labels()
         with self.at(shorten_path(study.folder / "layout.yaml")):
             check_all(study.layout, {**study.tables, **study.figures}, "layout")
         for file, section, entries, work in (
-            ("claims", "claims", [(e.id, e) for e in study.claims], self.claim),
-            ("assumptions", "assumptions", [(e.id, e) for e in study.assumptions], self.assumption),
-            ("assumptions", "readings", [(e.folder, e) for e in study.readings], self.reading),
+            ("claims", "claims", [(e.id, e) for e in study.claims], self.check_claim),
+            (
+                "assumptions",
+                "assumptions",
+                [(e.id, e) for e in study.assumptions],
+                self.check_assumption,
+            ),
+            (
+                "assumptions",
+                "readings",
+                [(e.folder, e) for e in study.readings],
+                self.check_reading,
+            ),
         ):
             with self.at(shorten_path(study.folder / f"{file}.yaml")):
                 # Results are looked up by it.
@@ -159,18 +180,20 @@ class Checks:
                 for name in names:
                     if names.count(name) > 1:
                         raise Fault(f"{section}: {name}: another one has this id already")
-                self.each(section, dict(entries), work)
+                self.check_entries(section, dict(entries), work)
         with self.at(shorten_path(study.folder / "assumptions.yaml"), "fitted"):
-            check_all(study.fitted.keys() - self.invalid, study.with_published(), "table")
+            check_all(study.fitted.keys() - self.invalid, study.find_published_tables(), "table")
             for table, fitted in study.fitted.items():
                 check_all(fitted, [each.metric for each in study.tables[table].values], table)
         return self.faults
 
     # experiments.yaml
 
-    def method(self, name: str, method: Method) -> None:
-        """Its planner has the interface of one, and nothing of its own is named like a column."""
-        self.names(method)
+    def check_method(self, name: str, method: Method) -> None:
+        """Check that a method's planner has the interface of one, and that none of its settings and
+        columns has the name of a column of results.
+        """
+        self.check_names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
             check_inside(self.study.folder, method.planner, location)
@@ -187,44 +210,52 @@ class Checks:
             and not hasattr(module, "resume")
         ):
             raise Fault(f"policy: {method.policy}: warm, but its planner has no function resume")
+        # Panels and claims can use what the planner reports as a metric.
         metrics.add_columns(extra)
 
-    def shared_settings(self) -> None:
-        """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
+    def check_shared_settings(self) -> None:
+        """Check that some planner accepts each setting of all methods, of a planner's methods, and
+        of presets.
+        """
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
-        used = {setting for name in study.methods for setting in study.accepted(name)}
+        used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
         self.known["setting"] = used
         if not self.complete:
             return
         check_all(study.of_planners, planners, "settings")
         check_all(study.settings.keys() - study.of_planners.keys(), used, "settings")
         for planner, settings in study.of_planners.items():
-            check_all(settings, study.accepted(planners[planner]), f"settings: {planner}")
+            check_all(
+                settings, study.read_accepted_settings(planners[planner]), f"settings: {planner}"
+            )
         for preset, values in study.presets.items():
             if preset in used or preset in RESERVED:
                 raise Fault(f"presets: {preset}: a setting or a column has this name")
             for value, settings in values.items():
                 check_all(settings, used, f"presets: {preset}: {value}")
 
-    def settings(self, study: Study, name: str) -> None:
-        """Each setting of a method has a value that its planner accepts, also on a problem where
-        the study has another one.
+    def check_settings(self, study: Study, name: str) -> None:
+        """Check that each setting of a method has a value that its planner accepts, also on
+        problems where an assumption changes it.
         """
         own = [each.problems for each in study.assumptions if each.id in study.values]
         for problem in {"", *itertools.chain.from_iterable(own)}:
-            settings = study.resolved(name) | study.changed(name, problem)
+            settings = study.resolve_settings(name) | study.find_changed_settings(name, problem)
             interface.check_settings(load_planner(study.planner(name)), settings, "settings")
 
-    def workspace(self, name: str, workspace: Workspace) -> None:
-        """It can be read."""
-        self.names(workspace)
+    def check_workspace(self, name: str, workspace: Workspace) -> None:
+        """Check that a workspace's map can be read."""
+        self.check_names(workspace)
+        # Maps of other kinds follow from a problem, and `check_problem` builds them.
         if not workspace.draws and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
-    def problem(self, name: str, problem: ProblemEntry) -> None:
-        """It has the keys of its kind of workspace, and lies in free space."""
-        self.names(problem)
+    def check_problem(self, name: str, problem: ProblemEntry) -> None:
+        """Check that a problem has the keys of its kind of workspace, and that its ends lie in free
+        space.
+        """
+        self.check_names(problem)
         if self.complete:
             check_all(problem.settings, self.known["setting"], "settings")
         home = self.study.workspace_of(name)
@@ -236,20 +267,23 @@ class Checks:
                 )
         if home.draws and problem.start is None:
             raise Fault(f"start_cell: {problem.start_cell}: expected start: [x, y] in a drawn map")
-        self.built(name)
+        self.build_problem(name)
 
-    def _built(self, name: str) -> Problem:
-        """A problem as planners see it, in the first layout if there are several. Raises
-        ValueError.
+    def _build_problem(self, name: str) -> Problem:
+        """Return a problem as planners see it; in the first layout and with the most obstacles if
+        these are drawn. Raises ValueError.
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
+        # With fewer circles of the same layout, the ends are free too.
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
         described = build_descriptions(study, {name: problem.plain("layouts") | drawn})
         return problems.build_all(described, study.folder)[0][name]
 
-    def experiment(self, name: str, experiment: Experiment) -> None:
-        """Its problems and methods suit each other, and what it varies exists."""
-        self.names(experiment)
+    def check_experiment(self, name: str, experiment: Experiment) -> None:
+        """Check that the problems and methods of an experiment suit each other, and that what it
+        varies exists.
+        """
+        self.check_names(experiment)
         study, moves = self.study, self.study.moves(name)
         for problem in experiment.problems:
             if study.workspace_of(problem).moves != moves:
@@ -263,27 +297,34 @@ class Checks:
                     f"methods: {method}: {'needs' if moves else 'has'} a policy, which experiments "
                     "in worlds that move need, and no others"
                 )
-        accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
+        accepted = {
+            setting
+            for method in experiment.methods
+            for setting in study.read_accepted_settings(method)
+        }
         check_all(experiment.vary, accepted | set(study.presets), "vary")
         for setting in experiment.vary.keys() & study.presets.keys():
+            # Presets have text as keys, so true in a list stands for `true`.
             values = (str(value).lower() for value in experiment.vary[setting])
             check_all(values, study.presets[setting], f"vary: {setting}")
+        # A baseline joins without being listed.
         factors = {"method": [*experiment.methods, *study.baselines]} | experiment.vary
         factors["problem"] = experiment.problems
         check_all(experiment.fewer, factors, "fewer")
         for factor, fewer in experiment.fewer.items():
             check_all(fewer, map(str, factors[factor]), f"fewer: {factor}")
         for method in experiment.methods:
-            self.method_in(name, experiment, method)
+            self.check_method_in(name, experiment, method)
 
-    def method_in(self, name: str, experiment: Experiment, method: str) -> None:
-        """A method's planner supports the problems of an experiment, and its settings are valid
-        under every condition.
+    def check_method_in(self, name: str, experiment: Experiment, method: str) -> None:
+        """Check that a method's planner serves the problems of an experiment, and that its settings
+        are valid under each condition.
         """
         study, where = self.study, f"methods: {method}"
         module = load_planner(study.planner(method))
         for problem in experiment.problems:
             kind = study.kind_of(problem)
+            # A planner that names no kinds serves all.
             if kind not in getattr(module, "workspaces", (kind,)):
                 served = ", ".join(module.workspaces)
                 raise Fault(
@@ -291,7 +332,9 @@ class Checks:
                     f"({problem})"
                 )
             if hasattr(module, "serves"):
-                interface.ask(module.serves, f"{where}: problem {problem}", self.built(problem))
+                interface.ask(
+                    module.serves, f"{where}: problem {problem}", self.build_problem(problem)
+                )
         if not self.complete or method in self.invalid:
             return
         described = build_chunk(study, name, method, "full", 0)
@@ -308,9 +351,10 @@ class Checks:
 
     # Names defined elsewhere
 
-    def names(self, model: Model) -> None:
-        """Names in a model refer to something that exists. The columns of a panel without runs
-        belong to its function.
+    def check_names(self, model: Model) -> None:
+        """Check that the names in a model refer to something that exists.
+
+        The columns of a panel without runs are not checked: its function makes them.
         """
         experiments = convert_to_list(getattr(model, "experiment", None) or [])
         claim = isinstance(model, ClaimCheck)
@@ -324,21 +368,23 @@ class Checks:
                 folder = "published/" if what == "published" else ""
                 check_inside(self.study.folder, f"{folder}{name}", f"{key}: {name}")
             elif experiments:
-                self.of_runs(tuple(experiments), claim, what, name, key)
+                self.check_name_in_runs(tuple(experiments), claim, what, name, key)
             if what in ("function", "world") and len(path) == 1:
-                self.arguments(self.known[what][name], getattr(model, "arguments", {}))
+                self.check_arguments(self.known[what][name], getattr(model, "arguments", {}))
 
-    def _runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
-        """The runs of experiments; those of claims without baselines."""
+    def _join_runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
+        """Return the planned runs of experiments; for a claim, without those of baselines."""
         return join_designs(
             [self.design(each) for each in experiments], self.study.baselines if claim else ()
         )
 
-    def of_runs(
+    def check_name_in_runs(
         self, experiments: tuple[str, ...], claim: bool, what: str, name: Any, key: str
     ) -> None:
-        """A metric, a column, a selection, a repeat or a problem exists in the runs of
-        experiments.
+        """Check that the runs of some experiments have a metric, a column, a selection, a repeat or
+        a problem.
+
+        what: the kind of name, as `Names` says. key: the key in the file, for messages.
         """
         runs = self.runs(experiments, claim)
         match what:
@@ -356,8 +402,10 @@ class Checks:
             case "problem of runs":
                 check_known(name, runs.values("problem"), key)
 
-    def arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
-        """A function's keyword-only arguments are given, each as its annotation says."""
+    def check_arguments(self, function: Callable, arguments: dict[str, Any]) -> None:
+        """Check that a function's keyword-only arguments are given, each of the type that its
+        annotation says.
+        """
         accepted = {}
         for name, parameter in inspect.signature(function).parameters.items():
             if parameter.kind is parameter.KEYWORD_ONLY:
@@ -370,17 +418,17 @@ class Checks:
 
     # artefacts.yaml
 
-    def table(self, name: str, table: TableEntry) -> None:
-        """Its names exist, and its file of published numbers fits it."""
-        self.names(table)
+    def check_table(self, name: str, table: TableEntry) -> None:
+        """Check that the names of a table exist, and that its file of published numbers fits it."""
+        self.check_names(table)
         if isinstance(table, Pivot) and table.published:
             runs = self.design(table.experiment)
             published.check(self.study, runs, table)
             runs.check_where(table.primary, "primary")
 
-    def prints(self) -> None:
-        """Looks are of methods; labels tell these apart, and are of what experiments.yaml names, of
-        columns, metrics and statistics, or of words of a function's table.
+    def check_labels(self) -> None:
+        """Check that looks belong to methods, that labels tell methods apart, and that each label
+        belongs to a name that the study uses.
         """
         study = self.study
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
@@ -389,6 +437,7 @@ class Checks:
             label = study.labels.get(name, name)
             if (other := printed.setdefault(label, name)) != name:
                 raise Fault(f"labels: {other}, {name}: both {label}; expected a label for each")
+        # A misspelt name is most likely one of the study's own, so these are suggested first.
         own = re.findall(r"[\w.+-]+", read_text(study.folder / "experiments.yaml", ""))
         words = {*own, *metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words}
         for each in (study, *study.tables.values()):
@@ -396,18 +445,18 @@ class Checks:
                 near = difflib.get_close_matches(name, own)
                 check_known(name, near or words, "labels")
 
-    def figure(self, name: str, figure: Figure) -> None:
-        """Its panels' names exist."""
+    def check_figure(self, name: str, figure: Figure) -> None:
+        """Check that the names in a figure's panels exist."""
         if name in self.study.tables:
             raise Fault("a table has this name already")
         for panel in figure.panels:
             with self.at("panels", panel.place):
-                self.names(panel)
-                self.panel(panel)
+                self.check_names(panel)
+                self.check_panel(panel)
 
-    def panel(self, panel: Panel) -> None:
-        """A panel's runs are of the kind that it shows, of one method if it shows one run, and of
-        enough methods.
+    def check_panel(self, panel: Panel) -> None:
+        """Check that a panel's runs are of the kind that it shows, and of one method if it shows
+        one run.
         """
         if not (experiment := getattr(panel, "experiment", None)):
             return
@@ -425,19 +474,19 @@ class Checks:
 
     # claims.yaml and assumptions.yaml
 
-    def claim(self, identity: str, claim: Claim) -> None:
-        """The names of its checks exist, and its variants select runs."""
-        self.names(claim)
+    def check_claim(self, identity: str, claim: Claim) -> None:
+        """Check that the names in a claim's checks exist, and that its variants select runs."""
+        self.check_names(claim)
         first, *_ = variants(claim)
         judged = in_variant(claim.checks, first, first)
         for number, check in enumerate(claim.checks):
             with self.at("checks", str(number)):
-                self.names(check)
+                self.check_names(check)
                 if check.cells and check.experiments:
                     values = self.runs(tuple(check.experiments), True).values(check.cells)
                     check_all(set(check.groups_named) - {"rest"}, values, "group")
                 if isinstance(check, OfRuns):
-                    self.unmixed(judged[number])
+                    self.check_unmixed(judged[number])
         experiments = {name: None for check in claim.checks for name in check.experiments}
         for column, entries in claim.variants.items():
             for value in (each for entry in entries for each in convert_to_list(entry)):
@@ -449,13 +498,12 @@ class Checks:
                         {column: value}, "variants", claim=True
                     )
 
-    def unmixed(self, check: OfRuns) -> None:
-        """A unit of a comparison has runs of one experiment, condition and method. Ranks are taken
-        among the runs of an artefact alone.
-        """
+    def check_unmixed(self, check: OfRuns) -> None:
+        """Check that each unit of a comparison has runs of one experiment, condition and method."""
         rows = self.runs(tuple(check.experiments), True).rows
         planned = check.where.keys() & {*rows} - {"repeat"}
         rows = select(rows, {column: check.where[column] for column in planned})
+        # Ranks are taken among the runs of an artefact alone.
         factor = "" if check.metric == "rank" else mixed(check, rows)
         if factor:
             vary = [self.study.experiments[name].vary for name in check.experiments]
@@ -468,11 +516,11 @@ class Checks:
                 "with one of them"
             )
 
-    def assumption(self, identity: str, assumption: AssumptionEntry) -> None:
-        """Its names are those of the study, and every alternative is a valid value of what it
-        governs.
+    def check_assumption(self, identity: str, assumption: AssumptionEntry) -> None:
+        """Check that an assumption's names are those of the study, and that each alternative is a
+        valid value of what it governs.
         """
-        self.names(assumption)
+        self.check_names(assumption)
         study = self.study
         for name, key in assumption.workspace.items():
             check_known(name, study.workspaces, "workspace")
@@ -482,25 +530,28 @@ class Checks:
                 raise Fault(f"default: {assumption.default}: expected {used}, which {name} has")
             for value in assumption.alternatives:
                 with self.at("alternatives", str(value), name):
-                    self.names(type(workspace).model_validate(workspace.plain() | {key: value}))
+                    self.check_names(
+                        type(workspace).model_validate(workspace.plain() | {key: value})
+                    )
         if not assumption.setting:
             return
-        methods = study.concerned(assumption)
+        methods = study.list_governed_methods(assumption)
+        # A planner with a fault may have any settings.
         if not methods and self.complete:
             used = self.known["setting"] - {assumption.setting}
             check_known(assumption.setting, used, "setting")
         for method, settings in assumption.along.items():
             check_known(method, methods, "with")
-            check_all(settings, study.accepted(method), f"with: {method}")
+            check_all(settings, study.read_accepted_settings(method), f"with: {method}")
         for value in assumption.alternatives:
             changed = apply_values(study, {identity: value})
             for method in methods:
                 with self.at("alternatives", str(value), method):
-                    self.settings(changed, method)
+                    self.check_settings(changed, method)
 
-    def reading(self, name: str, reading: ReadingEntry) -> None:
-        """Its values are alternatives that a run can have, all at once, and its claims rest on
-        runs.
+    def check_reading(self, name: str, reading: ReadingEntry) -> None:
+        """Check that a reading's values are alternatives which a run can have all at once, and that
+        its claims rest on runs.
         """
         study, settled = self.study, {}
         known = {each.id: each for each in study.assumptions}
@@ -513,11 +564,13 @@ class Checks:
                 raise Fault(f"values: {key}: governs no setting, so that no run can have it")
             if assumption.excluded_by:
                 raise Fault(f"values: {key}: excluded by {assumption.excluded_by}")
+            # True equals 1 in Python, but is another value of a setting.
             if identify(value) not in map(identify, assumption.alternatives):
                 raise Fault(
                     f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
                 )
-            for method in study.concerned(assumption):
+            for method in study.list_governed_methods(assumption):
+                # Two assumptions about one setting of a method could not both hold.
                 place = (method, assumption.setting, *assumption.problems)
                 if other := settled.get(place):
                     raise Fault(f"values: {key}: governs what {other} does, {assumption.setting}")
@@ -536,12 +589,12 @@ class Checks:
             changed = apply_values(study, reading.values)
             for method, *_ in settled:
                 with self.at("values", method):
-                    self.settings(changed, method)
+                    self.check_settings(changed, method)
 
 
 def check_inside(folder: Path, name: str, location: str) -> None:
-    """Raise Fault, beginning with a location, for a file of a study that is missing, is not a
-    regular file, or lies outside its folder, also through a link.
+    """Raise Fault, beginning with a location, unless a file of a study is a regular file inside its
+    folder; links are followed.
     """
     file = folder / name
     if not file.resolve().is_relative_to(folder.resolve()):

@@ -1,7 +1,7 @@
-"""Models of `claims.yaml` and `assumptions.yaml`: sentences of a paper as checks, and what a paper
-leaves open.
+"""Models of `claims.yaml` and `assumptions.yaml`: a paper's sentences as checks, and its open
+details.
 
-A claim is defined next to the code that judges it (`analysis.claims.claim`), and so are the keys of
+A claim is defined beside the code that judges it (`analysis.claims.claim`), and so are the keys of
 each kind of check.
 """
 
@@ -31,13 +31,13 @@ AssumptionId = Annotated[str, match_text(r"[OM][1-9][0-9]*[a-z]?", "O or M and a
 
 
 class ClaimsFile(Model):
-    """The file."""
+    """The content of `claims.yaml`."""
 
     claims: list[Claim] = Field(description="a list of claims", min_length=1)
 
 
 class AssumptionEntry(Model):
-    """What a paper leaves open, and the default here."""
+    """A detail that a paper leaves open, with our default and the other possible values."""
 
     id: AssumptionId = Field(
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
@@ -97,7 +97,7 @@ class AssumptionEntry(Model):
 
 
 class ReadingEntry(Model):
-    """Another program that a careful reader of the paper could have written."""
+    """A joint reading: another program that a careful reader of the paper could have written."""
 
     name: Annotated[
         str,
@@ -121,12 +121,12 @@ class ReadingEntry(Model):
 
     @property
     def folder(self) -> str:
-        """The name of the folder of its results."""
+        """The name of the folder of the reading's results."""
         return re.sub("[ ,]+", "_", self.name)
 
 
 class AssumptionsFile(Model):
-    """The file."""
+    """The content of `assumptions.yaml`."""
 
     assumptions: list[AssumptionEntry] = Field(description="a list of assumptions", min_length=1)
     readings: list[ReadingEntry] = Field(

@@ -1,4 +1,4 @@
-"""A study as defined by its files."""
+"""A study as its files define it."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -17,10 +17,8 @@ from bezierplan.workspaces import files
 
 
 class Study(Experiments, ArtefactsFile):
-    """A study as defined by its files: a paper of this project or a user's own folder of the same
-    form (config/README.md).
-
-    Its fields are what stands in the files.
+    """A study as its files define it: a paper of this project, or a user's own folder of the same
+    form (config/README.md). The fields hold the content of the files.
     """
 
     claims: Sequence[Claim] = ()
@@ -29,67 +27,79 @@ class Study(Experiments, ArtefactsFile):
     fitted: Mapping = {}
     layout: Mapping[str, Layout] = {}
     values: Mapping[str, Any] = {}
-    """Id of an assumption -> the value that it has instead of the default (`alternatives.under`).
-    """
+    """Assumption id -> value in place of the default (`alternatives.apply_values`)."""
 
-    def concerned(self, assumption: AssumptionEntry) -> list[str]:
-        """Return the methods whose setting an assumption governs, except baselines and variants;
-        only those that it names, if any.
+    def list_governed_methods(self, assumption: AssumptionEntry) -> list[str]:
+        """Return the methods whose setting an assumption governs: those that it names, otherwise
+        all except baselines and variants.
         """
         of = assumption.methods or [
             name
             for name, method in self.methods.items()
             if name not in self.baselines and not method.variant_of
         ]
-        return [method for method in of if assumption.setting in self.accepted(method)]
+        return [
+            method for method in of if assumption.setting in self.read_accepted_settings(method)
+        ]
 
-    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
-        """Return the settings of a method that `values` change: everywhere, or on a problem."""
+    def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
+        """Return the settings of a method that `values` change, as name -> value.
+
+        problem: the settings that change on this problem alone; empty for those that change
+        everywhere.
+        """
         chosen = [
             each
             for each in self.assumptions
-            if each.id in self.values and method in self.concerned(each)
+            if each.id in self.values and method in self.list_governed_methods(each)
         ]
         governed, settings = {each.setting for each in chosen}, {}
         for each in chosen:
             if problem in (each.problems or [""]):
                 along = each.along.get(method, {}).items()
+                # A setting that another chosen assumption governs keeps that assumption's value.
                 settings |= {name: value for name, value in along if name not in governed}
                 settings[each.setting] = self.values[each.id]
         return settings
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
-        """Map files of workspaces relative to the working folder, each once."""
+        """Return the map files of workspaces, each once, relative to the working folder."""
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
         return sorted({shorten_path(file) for each in named for file in each})
 
-    def named(self, folder: str) -> list[str]:
-        """Names of the tables and figures of a tree: `paper`, those that the paper numbers; a study
-        without such has all of its own there. `beyond`: the others.
+    def list_names(self, folder: str) -> list[str]:
+        """Return the names of the tables and figures in a folder of results.
+
+        folder: `paper` for those that the paper numbers (for all, if it numbers none), `beyond` for
+        the others.
         """
         names = [*self.tables, *self.figures]
         numbered = [name for name in names if choose_tree(name) == PAPER] or names
         return numbered if folder == PAPER else [name for name in names if name not in numbered]
 
     def artefact(self, name: str) -> TableEntry | Figure:
-        """A table or figure."""
+        """Return the table or figure of a name."""
         return self.tables.get(name) or self.figures[name]
 
     def files_of(self, name: str) -> list[str]:
-        """The files of a table or figure, in the folder of the study's results."""
+        """Return the files of a table or figure, relative to the folder of the study's results."""
         endings = ["svg", "png", "pdf", "csv", "txt"] if name in self.figures else ["csv", "tex"]
-        if name in self.compared():
+        if name in self.find_tables_of_runs():
             endings.append("comparison.csv")
-        if name in self.with_published():
+        if name in self.find_published_tables():
             endings += ["published.csv", "wholes.csv"]
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
-    def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; the others have none."""
+    def find_tables_of_runs(self) -> dict[str, Pivot]:
+        """Return the tables of runs by name. No other kind of table is compared with published
+        numbers.
+        """
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
-    def whole(self, table: str) -> TableEntry:
-        """A table with what the one that it extends says of published numbers."""
+    def complete_table(self, table: str) -> TableEntry:
+        """Return a table; one that extends another takes over what that says about published
+        numbers.
+        """
         spec = self.tables[table]
         if not getattr(spec, "extends", None):
             return spec
@@ -97,13 +107,15 @@ class Study(Experiments, ArtefactsFile):
         shared = ("published", "reads", "within", "primary", "identify")
         return spec.but(**{name: getattr(printed, name) for name in shared})
 
-    def published_file(self, table: str) -> str | None:
-        """The file of a table's published numbers relative to the working folder, or None."""
-        file = getattr(self.whole(table), "published", None)
+    def find_published_file(self, table: str) -> str | None:
+        """Return the file of a table's published numbers, relative to the working folder; None
+        without one.
+        """
+        file = getattr(self.complete_table(table), "published", None)
         return file and shorten_path(self.folder / "published" / file)
 
-    def reconstructed(self, table: Pivot) -> list[str]:
-        """Return the problems of a table on maps that the paper does not print."""
+    def list_reconstructed_problems(self, table: Pivot) -> list[str]:
+        """Return the problems of a table whose maps the paper does not print."""
         problems = self.experiments[table.experiment].problems
         shown = convert_to_list(table.where.get("problem", problems))
         return [
@@ -113,28 +125,32 @@ class Study(Experiments, ArtefactsFile):
         ]
 
     def own_methods(self, experiment: str, artefact: str) -> list[str]:
-        """The methods of an experiment in a table or figure that selects none: without variants,
-        where it is one of the paper's.
+        """Return the methods of an experiment that a table or figure shows unless it selects some.
+        A table or figure of the paper shows no variants.
         """
-        of_paper = choose_tree(artefact) == PAPER or artefact in self.with_published()
+        of_paper = choose_tree(artefact) == PAPER or artefact in self.find_published_tables()
         methods = self.experiments[experiment].methods
         return [name for name in methods if not (of_paper and name in self.variants())]
 
-    def with_published(self) -> dict[str, Pivot]:
-        """The tables of runs that have published numbers."""
-        return {name: table for name, table in self.compared().items() if table.published}
+    def find_published_tables(self) -> dict[str, Pivot]:
+        """Return the tables of runs that have published numbers, by name."""
+        return {
+            name: table for name, table in self.find_tables_of_runs().items() if table.published
+        }
 
     def verdict_file(self) -> str | None:
-        """Its sentences of what follows, relative to the working folder, or None."""
+        """Return the file with the sentences of the study's verdict, relative to the working
+        folder, or None.
+        """
         file = self.folder / "verdict.yaml"
         return shorten_path(file) if file.is_file() else None
 
-    def published_files(self) -> list[str]:
-        """All files of published numbers, relative to the working folder."""
+    def list_published_files(self) -> list[str]:
+        """Return all files of published numbers, relative to the working folder."""
         return [shorten_path(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 
     def variants(self) -> dict[str, str]:
-        """Method -> the method whose published numbers it is compared with."""
+        """Return variant -> the method with whose published numbers it is compared."""
         return {
             name: method.variant_of for name, method in self.methods.items() if method.variant_of
         }

@@ -1,4 +1,4 @@
-"""The planned runs of experiments: methods, problems, settings, and what can be selected."""
+"""The planned runs of experiments: methods, problems, settings, and what files can select."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -20,25 +20,27 @@ _LEFT_OUT = ("least_length", "bound_path")
 
 
 class Design(NamedTuple):
-    """The runs of experiments at scale full."""
+    """The planned runs of experiments at scale full."""
 
     experiments: list[str]
     rows: pd.DataFrame
-    """One a run, the first repeat alone, with the columns that are known before a run."""
+    """One row for each condition and method, with the columns that are known before a run (repeat
+    0).
+    """
     types: dict[str, str]
-    """Of the values of all columns of their tables: flag, number, word, or another; `reported` of
-    those that only planners know.
+    """Column -> type of its values: flag, number, word, list or name; `reported` for columns that
+    only a planner reports.
     """
     kinds: set[str]
-    """Kinds of workspace; none of drives."""
+    """Kinds of workspace; empty for drives."""
     repeats: int
 
     def check_column(self, column: str, kind: str, location: str) -> None:
-        """A column exists, and has the type that is asked for. Raises Fault, beginning with a
-        location.
+        """Raise Fault, beginning with a location, unless a column exists and has the type that is
+        asked for.
 
-        kind: `column`, one that is known before a run; `number column`, such a column of numbers;
-        `quantity`, any column of numbers.
+        kind: `column` for one that is known before a run, `number column` for such a column of
+        numbers, `quantity` for any column of numbers.
         """
         fit = [
             name
@@ -53,7 +55,7 @@ class Design(NamedTuple):
         check_known(column, fit, location)
 
     def check_metric(self, metric: str, location: str) -> None:
-        """Runs can have a metric. Raises Fault, beginning with a location."""
+        """Raise Fault, beginning with a location, unless the runs can have a metric."""
         check_known(metric, METRICS, location)
         described, none = METRICS[metric], f"{location}: {metric}: no run of {self.name} has it"
         needed = described.needs or ((metric,) if described.compute is None else ())
@@ -63,8 +65,10 @@ class Design(NamedTuple):
             raise Fault(f"{none}: it is for workspaces of kind {' or '.join(described.on)}")
 
     def check_where(self, where: dict[str, Any], location: str, claim: bool = False) -> None:
-        """A selection names existing columns and values, in a combination that some run has. Raises
-        Fault, beginning with a location. claim: whether it may select by what is computed of runs.
+        """Raise Fault, beginning with a location, unless a selection names existing columns and
+        values, and some planned run has all of them.
+
+        claim: it may also select by a metric.
         """
         for column, wanted in where.items():
             key, known = f"{location}: {column}", column in self.rows
@@ -97,22 +101,22 @@ class Design(NamedTuple):
             )
 
     def check_repeat(self, repeat: Any, location: str) -> None:
-        """A repeat is run. Raises Fault, beginning with a location."""
+        """Raise Fault, beginning with a location, unless a repeat is run."""
         if repeat not in range(self.repeats):
             raise Fault(f"{location}: {repeat}: expected a repeat from 0 to {self.repeats - 1}")
 
     def values(self, column: str) -> list[Any]:
-        """All values of a column that is known before a run."""
+        """Return all values of a column that is known before a run."""
         return self.rows[column].dropna().unique().tolist()
 
     @property
     def name(self) -> str:
-        """In messages."""
+        """The experiments, as messages name them."""
         return ", ".join(self.experiments)
 
 
 def build_design(study: Study, experiment: str) -> Design:
-    """The runs of an experiment."""
+    """Return the planned runs of an experiment."""
     methods, moves = study.methods_of(experiment), study.moves(experiment)
     chunks = [build_chunk(study, experiment, method, "full", 0) for method in methods]
     rows = [identify_run(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
@@ -133,7 +137,7 @@ def build_design(study: Study, experiment: str) -> Design:
 
 
 def join_designs(designs: list[Design], without: Iterable[str] = ()) -> Design:
-    """The runs of several experiments, without those of some methods."""
+    """Return the planned runs of several experiments, without those of some methods."""
     rows = pd.concat([each.rows for each in designs])
     return Design(
         [name for each in designs for name in each.experiments],
@@ -145,7 +149,7 @@ def join_designs(designs: list[Design], without: Iterable[str] = ()) -> Design:
 
 
 def _choose_type(values: Iterable[Any]) -> str:
-    """The type of a column of settings or places with these values."""
+    """Return the type of a column of settings or places with these values: flag, number or word."""
     values = [*values]
     if values and all(isinstance(value, bool) for value in values):
         return "flag"

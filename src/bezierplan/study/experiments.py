@@ -41,7 +41,7 @@ SCALES = ("smoke", "full", "extended")
 
 Settings = dict[Name, Setting]
 PART = r"[A-Za-z0-9_.+-]+"
-"""What a value must be like to be part of the name of a run or of a folder."""
+"""The form of a value that is part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
 Part = Annotated[str, match_text(PART, PART_EXPECTED)]
 Scales = Annotated[dict[Literal[SCALES], Count], Field(min_length=len(SCALES))]
@@ -190,7 +190,7 @@ class Experiment(Model):
         return self
 
     def runs_of(self, scale: str, factor: str, value: Any) -> int:
-        """Repeats, at most, of a method, on a problem or under a varied value."""
+        """Return the most repeats that a method, a problem or a varied value has at a scale."""
         most = self.repeats[scale]
         return self.fewer.get(factor, {}).get(str(value), most) if scale == "extended" else most
 
@@ -213,7 +213,7 @@ class FamilyEntry(Model):
 
 
 class BaselineEntry(Model):
-    """The baseline with which the summary compares the study's methods."""
+    """The baseline with which the summary compares a study's methods."""
 
     baseline: Annotated[Name, Names("baseline")] = Field(description="a baseline")
     proposed: Annotated[Name, Names("own method")] = Field(
@@ -231,7 +231,7 @@ class BaselineEntry(Model):
 
 
 class Paper(Model):
-    """The paper of a study."""
+    """The paper that a study repeats."""
 
     title: Line = Field(description="one line")
     authors: build_list_type(Line) = Field(description="a list of names")
@@ -242,13 +242,13 @@ class Paper(Model):
 
     @property
     def where(self) -> str:
-        """Authors, journal, year and link, as far as known."""
+        """Authors, journal, year and link, as far as they are known."""
         parts = [*self.authors, self.journal, self.year, self.link]
         return ", ".join(map(str, filter(None, parts)))
 
 
 class ExperimentsFile(Model):
-    """The file."""
+    """The content of `experiments.yaml`."""
 
     title: Line = Field(description="one line that names the study")
     paper: Paper = Field(
@@ -295,18 +295,18 @@ class ExperimentsFile(Model):
 
 
 class Experiments(ExperimentsFile):
-    """A study as far as this file defines it, which is all that a plan by one of its methods needs.
+    """A study as far as `experiments.yaml` defines it; to plan by one of its methods needs no more.
 
-    key: its name; folder: its location; methods: with baselines.
+    key: the name of the study. folder: its location. methods: those of the file, and its baselines.
     """
 
     key: str
     folder: Path
 
     @classmethod
-    def of(cls, folder: Path, content: dict[str, Any]) -> Self:
-        """A study in a folder, from what its files hold, checked. Raises Fault for a baseline with
-        the name of a method.
+    def build(cls, folder: Path, content: dict[str, Any]) -> Self:
+        """Return a study in a folder from the checked content of its files. Raises Fault for a
+        baseline with the name of a method.
         """
         for name in content["baselines"].keys() & content["methods"]:
             raise Fault(
@@ -314,10 +314,11 @@ class Experiments(ExperimentsFile):
                 "this name already"
             )
         content = content | {"methods": content["methods"] | content["baselines"]}
+        # The content is of checked models already.
         return cls.model_construct(key=folder.resolve().name, folder=folder, **content)
 
-    def accepted(self, method: str) -> dict[str, Any]:
-        """Settings accepted by a method's planner, with their annotations."""
+    def read_accepted_settings(self, method: str) -> dict[str, Any]:
+        """Return the settings that a method's planner accepts, as name -> declaration."""
         return read_settings(load_planner(self.planner(method)))
 
     @property
@@ -325,65 +326,75 @@ class Experiments(ExperimentsFile):
         """Planner -> settings of its methods alone."""
         return {name: each for name, each in self.settings.items() if isinstance(each, dict)}
 
-    def resolved(self, method: str) -> dict[str, Any]:
-        """All settings of a method, by name: the study's that its planner accepts, those of its
-        planner, its own, and those that are changed.
+    def resolve_settings(self, method: str) -> dict[str, Any]:
+        """Return all settings of a method, as name -> value.
+
+        Later ones take precedence: the study's that its planner accepts, those of its planner, the
+        method's own, and those that other values of assumptions change.
         """
-        accepted = self.accepted(method)
+        accepted = self.read_accepted_settings(method)
         common = {name: value for name, value in self.settings.items() if name in accepted}
         return (
             common
             | self.of_planners.get(self.methods[method].planner, {})
             | self.methods[method].settings
-            | self.changed(method)
+            | self.find_changed_settings(method)
         )
 
-    def changed(self, method: str, problem: str = "") -> dict[str, Any]:
-        """Return the settings of a method that other values of assumptions change, which this file
-        does not know: none.
+    def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
+        """Return the settings of a method that other values of assumptions change: none, because
+        assumptions stand in another file.
         """
         return {}
 
     def planner(self, method: str) -> str:
-        """The planner of a method: a name, or the path of a file relative to the working folder."""
+        """Return the planner of a method: a name, or the path of a file relative to the working
+        folder.
+        """
         planner = self.methods[method].planner
         return shorten_path(self.folder / planner) if is_file(planner) else planner
 
     def draws(self, method: str) -> bool:
-        """Whether a method uses random numbers: if not, one run stands for all repeats."""
+        """Return whether a method draws random numbers. If not, one run stands for all repeats."""
         return not getattr(load_planner(self.planner(method)), "deterministic", False)
 
     def methods_of(self, experiment: str) -> list[str]:
-        """Methods of an experiment, followed by the baselines that join: whose planner supports all
-        its workspaces and has no setting that it varies.
+        """Return the methods of an experiment, followed by the baselines that join it.
+
+        A baseline joins if its planner serves all workspaces of the experiment and has none of the
+        settings that this varies.
         """
         content, moves = self.experiments[experiment], self.moves(experiment)
+        # Without `workspaces`, a planner serves all kinds.
         kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
         for name, baseline in self.baselines.items():
             module = load_planner(self.planner(name))
-            varied = content.vary.keys() & self.accepted(name).keys()
+            varied = content.vary.keys() & self.read_accepted_settings(name).keys()
             served = kinds <= set(getattr(module, "workspaces", kinds))
             if served and not varied and moves == bool(baseline.policy):
                 methods.append(name)
         return methods
 
     def workspace_of(self, problem: str) -> Workspace:
-        """The workspace of a problem."""
+        """Return the workspace of a problem."""
         return self.workspaces[self.problems[problem].workspace]
 
     def moves(self, experiment: str) -> bool:
-        """Whether the runs of an experiment are simulated drives."""
+        """Return whether the runs of an experiment are simulated drives."""
         return any(
             self.workspace_of(problem).moves for problem in self.experiments[experiment].problems
         )
 
     def kind_of(self, problem: str) -> str:
-        """The kind of workspace that planners see in a problem."""
+        """Return the kind of workspace that planners see in a problem."""
         workspace = self.workspace_of(problem)
+        # Planners see what is drawn, or what a file of another format is converted to.
         return workspace.draws or workspace.gives or workspace.kind
 
     def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
-        """Descriptions of an experiment's problems that have a repeat, by name, as plain values."""
+        """Return the descriptions, as plain values, of an experiment's problems that have a repeat;
+        by name.
+        """
         content, described = self.experiments[experiment], {}
         for name in content.problems:
             if content.runs_of(scale, "problem", name) > repeat:
@@ -391,8 +402,8 @@ class Experiments(ExperimentsFile):
         return described
 
     def layouts_of(self, problem: str, scale: str) -> dict[str, dict]:
-        """Descriptions of a problem, by name, as plain values: one with layouts expands to a
-        problem for each layout and number of obstacles.
+        """Return the descriptions of a problem, as plain values, by name: several if it has
+        layouts, one for each layout and number of obstacles.
         """
         content = self.problems[problem]
         if content.layouts is None:
@@ -406,46 +417,50 @@ class Experiments(ExperimentsFile):
         }
 
     def every_problem(self) -> dict[str, dict]:
-        """Descriptions of all problems at scale full."""
+        """Return the descriptions of all problems at scale full, by name."""
         return {
             name: described
             for problem in self.problems
             for name, described in self.layouts_of(problem, "full").items()
         }
 
-    def described(self, workspace: str) -> dict[str, Any]:
-        """The description of a workspace as plain values, with the file of a function that draws
-        it.
+    def describe_workspace(self, workspace: str) -> dict[str, Any]:
+        """Return the description of a workspace as plain values, with the file of the function that
+        draws it, if there is one.
         """
         plain = self.workspaces[workspace].plain()
         return plain | {"file": self.code_for("worlds")[0]} if "function" in plain else plain
 
     def code_for(self, *parts: str) -> list[str]:
-        """The modules of some parts of its code (`machine.modules`) that it has."""
+        """Return the modules of the study's code for some parts (`machine.modules.PARTS`), if it
+        has them.
+        """
         code = find_code(self.key, shorten_path(self.folder))
         return [code[part] for part in parts if part in code]
 
 
 def read(folder: Path) -> Experiments:
-    """What the file of a study defines. Raises Fault."""
+    """Read and check a study's `experiments.yaml` alone. Raises Fault."""
     file = folder / "experiments.yaml"
     content = parse(ExperimentsFile, checked.read(file, shorten_path(file)), shorten_path(file))
-    return Experiments.of(folder, dict(content))
+    return Experiments.build(folder, dict(content))
 
 
 def build_problems_job(study: Experiments, experiment: str, scale: str) -> Descriptions:
-    """What the problems of an experiment depend on, except the content of map files."""
+    """Return what the problems of an experiment depend on, except the content of map files."""
     return build_descriptions(study, study.problems_of(experiment, scale))
 
 
 def build_descriptions(study: Experiments, problems: dict[str, dict]) -> Descriptions:
-    """What some problems depend on, except the content of map files, from their plain values."""
+    """Return what problems, given as plain values, depend on, except the content of map files."""
     homes = sorted({problem["workspace"] for problem in problems.values()})
     return Descriptions(
         study.key,
         {
+            # Settings belong to runs (`Chunk.problems`): a change of one must not build the
+            # problems again.
             name: {key: value for key, value in problem.items() if key != "settings"}
             for name, problem in problems.items()
         },
-        {name: study.described(name) for name in homes},
+        {name: study.describe_workspace(name) for name in homes},
     )

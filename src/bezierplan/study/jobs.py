@@ -1,5 +1,5 @@
-"""The jobs of the workflow (`analysis.jobs`, `figures.jobs`) that follow from studies: a function
-for each rule makes its job from a study, or all, and the rule's wildcards.
+"""The jobs of the workflow (`analysis.jobs`, `figures.jobs`), one function for each rule: it builds
+the rule's job from a study, or from all studies, and the rule's wildcards.
 """
 
 from collections.abc import Iterable
@@ -40,23 +40,26 @@ Studies = dict[str, Study]
 
 
 def build_problems(study: Study, scale: str, experiment: str) -> Problems:
-    """The problems of an experiment."""
+    """Build the job that writes the problems of an experiment."""
     described = build_problems_job(study, experiment, scale)
     maps = study.maps(described.workspaces)
     return Problems(described, shorten_path(study.folder), sources=maps)
 
 
 def build_bounds(study: Study, scale: str, experiment: str) -> Bounds:
-    """The bounds of an experiment."""
+    """Build the job that writes the bounds of an experiment's problems."""
     return Bounds()
 
 
 def build_chunk(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
-    """A chunk of runs, which always runs whole, whatever the number of requested repeats."""
+    """Return a chunk of a method's runs in an experiment. It always runs whole, even if fewer
+    repeats are asked for.
+    """
     content = study.experiments[experiment]
     size = content.chunk[scale] if study.draws(method) else 1
-    settings = study.resolved(method).items()
+    settings = study.resolve_settings(method).items()
     first = number * size
+    # A varied value may need fewer runs (`fewer`): later chunks leave it out.
     vary = {
         name: [value for value in values if content.runs_of(scale, name, value) > first]
         for name, values in content.vary.items()
@@ -66,6 +69,7 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
         experiment=experiment,
         method=method,
         planner=study.planner(method),
+        # Varied settings come with the condition (`execution.resolve_settings`).
         settings={name: value for name, value in settings if name not in content.vary},
         problems=_list_problems(study, experiment, method, scale, first),
         vary=vary,
@@ -82,28 +86,30 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
 def _list_problems(
     study: Study, experiment: str, method: str, scale: str, first: int
 ) -> dict[str, dict]:
-    """Places of an experiment's problems that have the repeat `first`, by name, with those of their
-    settings that a method leaves open.
+    """Return an experiment's problems that have the repeat `first`, name -> place. Each has those
+    of its settings that the method leaves open.
     """
-    accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
+    accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings.keys()
     met = {}
     for name, problem in study.problems_of(experiment, scale, first).items():
         settings = {
             key: value for key, value in problem.get("settings", {}).items() if key in accepted
-        } | study.changed(method, name)
+        } | study.find_changed_settings(method, name)
         place = {key: problem[key] for key in PLACE if key in problem}
         met[name] = place | ({"settings": settings} if settings else {})
     return met
 
 
 def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range:
-    """Numbers of the chunks that contain a method's repeats in an experiment at a scale, under the
-    condition with the most: one of a method that draws no random numbers.
+    """Return the numbers of the chunks that hold a method's repeats in an experiment at a scale,
+    under the condition with the most. A method that draws no random numbers has one.
     """
     content = study.experiments[experiment]
     if not study.draws(method):
         return range(1)
     factors = {"method": [method], "problem": content.problems} | content.vary
+    # A condition has the fewest repeats of any of its values. All combinations exist, so the most
+    # repeats of a condition are this minimum.
     repeats = min(
         max(content.runs_of(scale, factor, value) for value in values)
         for factor, values in factors.items()
@@ -114,17 +120,17 @@ def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range
 def count_chunks(
     study: Study, experiment: str, methods: Iterable[str], scale: str
 ) -> dict[str, int]:
-    """Number of chunks of each of some methods."""
+    """Return method -> its number of chunks, for some methods of an experiment."""
     return {method: len(list_chunks(study, experiment, method, scale)) for method in methods}
 
 
 def build_runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> Runs:
-    """A chunk of runs."""
+    """Build the job that makes a chunk of runs."""
     return Runs(build_chunk(study, experiment, method, scale, int(chunk)))
 
 
 def build_judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck:
-    """All chunks of the scale."""
+    """Build the job that judges the runs of all chunks of a method again."""
     numbers = list_chunks(study, experiment, method, scale)
     return Recheck(
         [build_chunk(study, experiment, method, scale, number) for number in numbers],
@@ -137,17 +143,18 @@ def build_judgement(study: Study, scale: str, experiment: str, method: str) -> R
 
 
 def _list_parts(artefact: TableEntry | Figure) -> list[Any]:
-    """What of a table or figure shows runs: the table, or some panels."""
+    """Return the parts of a table or figure that show runs: the table itself, or some panels."""
     parts = getattr(artefact, "panels", [artefact])
     return [part for part in parts if getattr(part, "experiment", None)]
 
 
 def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
-    """By experiment, the methods whose runs an artefact needs: for a table of the paper's form
-    those it selects, for another all (the comparison shows them), for a figure those it selects,
-    including baselines if named.
+    """Return experiment -> the methods whose runs a table or figure needs.
+
+    A table in the paper's form and a figure need the methods that they select, baselines included
+    if named; another table needs all, because its comparison shows them.
     """
-    if spec := study.compared().get(artefact):
+    if spec := study.find_tables_of_runs().get(artefact):
         methods = study.methods_of(spec.experiment)
         if spec.printed:
             methods = convert_to_list(
@@ -165,7 +172,7 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
 
 
 def find_results(study: Study, artefact: str, scale: str) -> Shows:
-    """The results that a table or figure shows."""
+    """Return the results that a table or figure shows: experiment -> method -> number of chunks."""
     return {
         name: count_chunks(study, name, methods, scale)
         for name, methods in list_methods(study, artefact).items()
@@ -173,13 +180,13 @@ def find_results(study: Study, artefact: str, scale: str) -> Shows:
 
 
 def choose_looks(study: Study) -> dict[str, str]:
-    """Method -> the name of its look in every figure."""
+    """Return method -> the name of its look in each figure."""
     return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
 
 
 def build_labels(study: Study, artefact: str) -> dict[str, str]:
-    """Labels, except those of methods, problems and workspaces that a table or figure does not
-    show.
+    """Return the labels that a table or figure needs: all but those of methods, problems and
+    workspaces that it does not show.
     """
     spec = study.artefact(artefact)
     layout = study.layout.get(artefact)
@@ -193,13 +200,14 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
         shown |= {str(value) for values in content.vary.values() for value in values}
         for problem in (study.problems[each] for each in content.problems):
             shown |= {problem.workspace, problem.route}
+    # A label that is not shown must not make the job run again.
     hidden = (study.methods.keys() | study.problems.keys() | study.workspaces.keys()) - shown
     return {name: label for name, label in study.labels.items() if name not in hidden} | printed
 
 
 def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
-    """The table of a name."""
-    spec = study.whole(table)
+    """Build the job that writes a table of runs with its comparison."""
+    spec = study.complete_table(table)
     experiment = study.experiments[spec.experiment]
     # Baselines appear only in the comparison, and there with variants, unless the table has the
     # paper's form.
@@ -207,14 +215,16 @@ def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     if spec.printed:
         where |= spec.primary
     beside = [] if spec.printed else study.methods_of(spec.experiment)
-    file = study.published_file(table)
+    file = study.find_published_file(table)
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
+        # What does not change the table's numbers stays out of the job, so an edit of it reruns
+        # nothing; labels come below.
         spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=build_labels(study, table),
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
-        reconstructed=study.reconstructed(spec),
+        reconstructed=study.list_reconstructed_problems(spec),
         fitted=study.fitted.get(spec.extends or table, {}),
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
@@ -225,22 +235,24 @@ def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
 
 
 def build_table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns:
-    """The table of a name."""
+    """Build the job that writes a table of another kind."""
     spec = study.tables[table].but(title=table)
     code = study.code_for("functions") if spec.kind == "function" else []
-    file = study.published_file(table)
-    return TableWithoutRuns(spec, sources=[file] if file else study.published_files(), code=code)
+    file = study.find_published_file(table)
+    return TableWithoutRuns(
+        spec, sources=[file] if file else study.list_published_files(), code=code
+    )
 
 
 def build_latex(study: Study, scale: str, table: str) -> Latex:
-    """The table of a name."""
-    spec, printed = study.tables[table], study.with_published().get(table)
+    """Build the job that typesets a table."""
+    spec, printed = study.tables[table], study.find_published_tables().get(table)
     heads = len(printed.index) if printed else 0
     return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
 
 
 def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
-    """The figure of a name."""
+    """Build the job that draws a figure."""
     spec, behind = study.figures[figure], list_methods(study, figure)
     methods = {method for name in behind for method in study.methods_of(name)}
     homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
@@ -264,6 +276,7 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
         repeats={name: study.experiments[name].repeats[scale] for name in behind},
         chunks={
             name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
+            # Only some panels repeat runs, such as tracks; others read the stored ones.
             for name in spec.rerun
         },
         unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
@@ -271,7 +284,7 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
         alternatives=_list_alternatives(study) if spec.claims else [],
         sources=[
             *study.maps([*spec.workspaces, *problems.workspaces]),
-            *(file for file in study.published_files() if spec.draws(Path(file).stem)),
+            *(file for file in study.list_published_files() if spec.draws(Path(file).stem)),
         ],
         shows=find_results(study, figure, scale),
         code=study.code_for(*spec.code),
@@ -279,7 +292,7 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
 
 
 def _list_alternatives(study: Study) -> list[dict[str, str]]:
-    """Return what the default and each single alternative is: assumption, its detail, value."""
+    """Return a row for the default and for each single alternative: assumption, detail, value."""
     details = {each.id: each.detail for each in study.assumptions}
     default = alternatives.DEFAULT
     rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
@@ -292,8 +305,8 @@ def _list_alternatives(study: Study) -> list[dict[str, str]]:
 
 
 def build_caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: title, what the paper says of its own, and the runs behind
-    it. The page has the settings of each method, and the verdicts of claims.
+    """Return the caption of a table or figure: its title, the paper's own words, and the runs
+    behind it. The page has the settings of each method, and the verdicts of claims.
     """
     title = study.artefact(artefact).title
     words = quote_paper(study, artefact)
@@ -302,12 +315,12 @@ def build_caption(study: Study, artefact: str, scale: str) -> str:
 
 
 def quote_paper(study: Study, artefact: str) -> str:
-    """What the paper says of its table or figure."""
+    """Return the words of the paper's caption of a table or figure, or an empty text."""
     return study.layout[artefact].says if artefact in study.layout else ""
 
 
 def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
-    """The runs of each method behind a table or figure."""
+    """Describe how many runs of each method are behind a table or figure."""
     parts, told = _list_parts(study.artefact(artefact)), []
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
@@ -333,8 +346,8 @@ JUDGED_AT = "extended"
 
 
 def is_shared(study: Study, default: Study, scale: str, experiment: str, method: str = "") -> bool:
-    """Return whether an experiment has the same problems in a study under other values of its
-    assumptions and by default, and a method the same runs.
+    """Return whether a study under other values shares its problems of an experiment with the
+    default, and the runs of a method if one is given.
     """
     own, other = (
         build_problems_job(each, experiment, scale).workspaces for each in (study, default)
@@ -349,7 +362,7 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
 
 
 def build_claims(study: Study, scale: str) -> Claims:
-    """The claims of a study."""
+    """Build the job that judges the claims of a study."""
     claims = [claim for claim in study.claims if claim.scale in (None, scale)]
     experiments = {name: study.experiments[name] for name in alternatives.list_experiments(claims)}
     return Claims(
@@ -368,7 +381,7 @@ def build_claims(study: Study, scale: str) -> Claims:
             for each in study.readings
             if scale == JUDGED_AT and not study.values
         },
-        sources=study.published_files(),
+        sources=study.list_published_files(),
         code=study.code_for("metrics", "functions"),
         shows={
             name: count_chunks(study, name, experiment.methods, scale)
@@ -378,7 +391,7 @@ def build_claims(study: Study, scale: str) -> Claims:
 
 
 def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
-    """What a table or figure shows of runs."""
+    """Return how each part of a table or figure selects and shows its runs."""
     return [
         Display(**{name: each for name, each in part.plain().items() if name in list_keys(Display)})
         for part in _list_parts(artefact)
@@ -386,16 +399,16 @@ def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
 
 
 def build_audit(study: Study, scale: str) -> Audit:
-    """The audit of a study."""
+    """Build the job that audits the printed numbers of a study."""
     tables = {
         Path(each.published).stem: each.but(title=name, note=None, labels={})
-        for name, each in study.with_published().items()
+        for name, each in study.find_published_tables().items()
     }
     return Audit(
         study.key,
         tables,
-        [name for name, table in tables.items() if study.reconstructed(table)],
-        sources=study.published_files(),
+        [name for name, table in tables.items() if study.list_reconstructed_problems(table)],
+        sources=study.list_published_files(),
         code=study.code_for("metrics", "audit"),
         shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
     )
@@ -420,7 +433,9 @@ def build_methods(studies: Studies, scale: str) -> MethodsTable:
 
 
 def build_summary(studies: Studies, scale: str) -> Summary:
-    """All studies."""
-    tables = [(key, name) for key, content in studies.items() for name in content.with_published()]
+    """Build the job that summarises all studies."""
+    tables = [
+        (key, name) for key, content in studies.items() for name in content.find_published_tables()
+    ]
     code = [module for content in studies.values() for module in content.code_for("metrics")]
     return Summary(tables, code=code)

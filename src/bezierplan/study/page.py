@@ -1,4 +1,4 @@
-"""The job that shows all results of a scale: the page."""
+"""The job that makes the page of a scale."""
 
 import hashlib
 from pathlib import Path
@@ -28,22 +28,22 @@ from bezierplan.study.jobs import Studies
 
 RESULTS = "results/"
 _LONG = 80
-"""Characters of a value that stand where settings are compared."""
+"""Most characters of a value in the table of settings."""
 
 
 def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
-    """Names of the tables and figures of a study that the page shows: those of the paper, and of
-    the others what there is; at scale extended all.
+    """Return the names of the tables and figures of a study that the page shows: all of the paper,
+    and those of the others that exist (at scale extended all).
 
     root: the folder of all scales, with a slash at its end.
     """
     folder = Path(f"{root}{scale}/{study.key}/{BEYOND}")
     return in_printed_order(
         [
-            *study.named(PAPER),
+            *study.list_names(PAPER),
             *(
                 name
-                for name in study.named(BEYOND)
+                for name in study.list_names(BEYOND)
                 if scale == "extended" or (folder / f"{name}.csv").is_file()
             ),
         ]
@@ -51,7 +51,7 @@ def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
 
 
 def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
-    """The results behind all tables, figures and claims that the page shows."""
+    """Return the results behind all tables, figures and claims that the page shows."""
     behind: Shows = {}
     for key, study in studies.items():
         parts = [
@@ -67,9 +67,9 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
 
 
 def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
-    """The page of a scale."""
+    """Build the job that makes the page of a scale."""
     shown = {key: _describe_study(own, scale, root) for key, own in studies.items()}
-    # At scale extended the outcome is what is made.
+    # The evidence comes from scale extended, whose own page has the results themselves.
     known = [
         key
         for key, own in studies.items()
@@ -84,17 +84,18 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
 
 
 def _is_of_project(study: Study) -> bool:
+    """Return whether a study is one of this project."""
     return study.folder.resolve().is_relative_to(STUDIES)
 
 
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
-    """What the page needs of a study beside its results."""
+    """Return what the page needs to know of a study beside its results."""
     artefacts = {
         name: ArtefactView(
             study.artefact(name).title,
             jobs.find_runs_behind(study, name, scale),
             jobs.quote_paper(study, name),
-            study.whole(name) if name in study.tables else None,
+            study.complete_table(name) if name in study.tables else None,
         )
         for name in list_artefacts(study, scale, root)
     }
@@ -105,7 +106,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         methods={
             name: MethodView(
                 study.planner(name),
-                study.resolved(name),
+                study.resolve_settings(name),
                 read_docstring(name_module(study.planner(name))),
             )
             for name in study.methods
@@ -131,9 +132,12 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
 
 
 def list_settings(study: Study) -> list[tuple[str, str, str]]:
-    """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
-    settings = {method: study.resolved(method) for method in study.methods}
+    """Return all settings of a study as rows of owner, setting and value. The owner is a method, or
+    a kind and a name such as `workspace room`.
+    """
+    settings = {method: study.resolve_settings(method) for method in study.methods}
     for name, workspace in study.workspaces.items():
+        # A map is a setting too: the digest shows that its file has changed.
         maps = study.maps([name])
         content = {"content of the map": compute_content_digest(*maps)} if maps else {}
         settings[f"workspace {name}"] = workspace.plain() | content
@@ -151,18 +155,18 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
 
 
 def _shorten(text: str) -> str:
-    """A text, of a long one a digest."""
+    """Return a text, cut if it is long, with a digest of the whole."""
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
 
 
 def has_audit(study: Study) -> bool:
-    """Whether a study has claims or published numbers."""
-    return bool(study.claims or study.with_published())
+    """Return whether a study has claims or published numbers."""
+    return bool(study.claims or study.find_published_tables())
 
 
 def _count_repeats(study: Study, scale: str) -> list[int]:
-    """The least and the largest number of runs of a method under a condition."""
+    """Return the least and the largest number of runs of a method under a condition."""
     counts = []
     for experiment in study.experiments.values():
         fewer = experiment.fewer.values() if scale == "extended" else ()

@@ -1,5 +1,5 @@
-"""Files of published numbers: checks that they are tables, and that their columns, names and
-numbers fit the table that they are compared with.
+"""Checks of the files of published numbers: each is a csv table whose columns, names and numbers
+fit the table that they are compared with.
 """
 
 import csv
@@ -20,15 +20,16 @@ from bezierplan.study.definition import Study
 from bezierplan.study.design import Design
 
 COLUMNS = ("metric", "statistic", "n", "unit", "value")
-"""Columns that every file has; those left of them tell its rows apart."""
+"""Columns that every such file has; the columns left of them identify a row."""
 TIDY = frozenset({"metric", "statistic", "value"})
 """Columns by which claims find numbers in files of any other form."""
 
 
 @cache
 def read(file: Path) -> dict[int, dict[str, str]]:
-    """A csv file: its rows by the number of the line where each ends, with a header of different
-    names. Raises Fault, with file and line.
+    """Return the rows of a csv file by the number of the line where each ends.
+
+    Raises Fault, naming file and line, for anything but a table whose header has different names.
     """
     location = shorten_path(file)
     reader = csv.DictReader(io.StringIO(read_text(file, location), newline=""), strict=True)
@@ -53,8 +54,8 @@ def read(file: Path) -> dict[int, dict[str, str]]:
 
 
 def check(study: Study, design: Design, table: Pivot) -> None:
-    """Raise Fault, with file, line, column and what would be right, for a file of published numbers
-    that does not fit its table, and for what does not fit it in the table.
+    """Raise Fault for a file of published numbers that does not fit its table, or a table that does
+    not fit its file. The message names file, line and column, and says what is expected.
     """
     file = study.folder / "published" / table.published
     here, lines = shorten_path(file), read(file)
@@ -73,10 +74,11 @@ def check(study: Study, design: Design, table: Pivot) -> None:
             )
     known = {column: design.values(column) for column in keys}
     if "repeat" in known:
+        # The design has the first repeat only.
         known["repeat"] = range(design.repeats)
     shown = {
         f"{value.metric} {statistic}"
-        for each in study.with_published().values()
+        for each in study.find_published_tables().values()
         if each.published == table.published
         for value in each.values
         for statistic in (*value.statistics, "unstated")
@@ -92,6 +94,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         check_known(f"{metric} {row['statistic']}", shown, f"{where}: metric and statistic")
         of_metric = metrics.unit(row["metric"], unit)
         share, least = row["statistic"] == "share", metrics.METRICS[metric].least
+        # `least` may name a column of the runs table, which printed numbers do not have.
         low = 0.0 if share or isinstance(least, str) else min(least, 0.0)
         for column, fits, wanted in (
             (
@@ -122,7 +125,8 @@ def check(study: Study, design: Design, table: Pivot) -> None:
 
 
 def _read(text: str) -> Any:
-    """The number that a text of a file stands for, or the text."""
+    """Return the number that a cell of the file holds, or the text if it is none."""
+    # Python would read 1_000 as a number; in a table it is a name.
     with suppress(ValueError):
         return text if "_" in text else float(text)
     return text

@@ -1,5 +1,5 @@
-"""Read studies from their folders and check them: every possible fault is found here, before the
-first job starts, and reported in one line (`checked.Fault`).
+"""Read studies from their folders and check them. Every fault is found here, before the first job
+starts, and is one line (`checked.Fault`).
 """
 
 import contextlib
@@ -27,17 +27,21 @@ from bezierplan.study.definition import Study
 from bezierplan.study.experiments import ExperimentsFile
 
 Folders = dict[Path, dict[str, Any]]
-"""Folders of studies, with the settings that take the place of a study's own."""
+"""Folder of a study -> settings that take the place of the study's own."""
 
 
 def find_config_file() -> Path:
-    """The file that names the studies to run: the working folder's, or the project's."""
+    """Return the file that names the studies to run: the working folder's, otherwise the
+    project's.
+    """
     own = Path("config", "config.yaml")
     return own if own.is_file() else TREE / own
 
 
 def read_config(config: Mapping[str, Any]) -> Folders:
-    """The studies that a configuration names. Raises Fault."""
+    """Return the folders of the studies that a configuration names, with its settings. Raises
+    Fault.
+    """
     location = "config/config.yaml or --config"
     settings = _convert_values(config.get("settings", {}))
     content = parse(ConfigFile, {**config, "settings": settings}, location)
@@ -51,14 +55,17 @@ def read_config(config: Mapping[str, Any]) -> Folders:
                 f"{shorten_path(folder)}{suggest_closest(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
+    # Settings of a study that is not run now are no fault.
     known = [folder.resolve().name for folder in (*folders, *STUDIES.glob("*"))]
     check_all(content.settings, known, f"{location}: settings")
     return folders
 
 
 def read_page_studies(scale_folder: str | Path) -> dict[str, str]:
-    """Return the studies that the page in the folder of a scale shows, by name, each with the word
-    that names it in a configuration, as far as it has results; none without such a page.
+    """Return the studies that the page of a scale shows and that have results there: name -> the
+    word that names it in a configuration. Without a page the result is empty.
+
+    scale_folder: the folder of the scale.
     """
     try:
         words = dict(json.loads(Path(scale_folder, "verified.json").read_text())["studies"])
@@ -68,8 +75,10 @@ def read_page_studies(scale_folder: str | Path) -> dict[str, str]:
 
 
 def load_others(words: Mapping[str, str], config: Mapping[str, Any]) -> dict[str, Study]:
-    """Return the studies of pages that nobody asked for, so that these keep them. One that is gone
-    or has a fault is told on stderr, and left out.
+    """Load the studies of existing pages that nobody asked for now, so that the pages keep them.
+
+    words: name -> the word that names it in a configuration. A study that is gone or has a fault is
+    reported on stderr and left out.
     """
     studies = {}
     for key, own in words.items():
@@ -81,8 +90,8 @@ def load_others(words: Mapping[str, str], config: Mapping[str, Any]) -> dict[str
 
 
 def select_studies(folders: Folders, targets: Iterable[str]) -> Folders:
-    """The studies that targets of the workflow belong to; all, unless each target is a study, or a
-    rule or a file of one.
+    """Return the studies to which the workflow's targets belong; all of them, unless each target
+    belongs to one.
     """
     patterns = {
         folder: f"(results/[^/]+/)?{re.escape(folder.resolve().name)}([_/]|$)" for folder in folders
@@ -96,8 +105,8 @@ def select_studies(folders: Folders, targets: Iterable[str]) -> Folders:
 
 
 def _convert_values(settings: Any) -> Any:
-    """Settings of a configuration, which are numbers where they look like it: Snakemake reads those
-    of the command line as text.
+    """Return a configuration's settings with numbers for text that looks like one, because
+    Snakemake reads the values of its command line as text.
     """
     if isinstance(settings, dict):
         return {name: _convert_values(each) for name, each in settings.items()}
@@ -114,8 +123,9 @@ FILES = {
 
 
 def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless the same was checked before.
-    Raises Fault.
+    """Read the studies in folders and check them; return them by name.
+
+    The checks are skipped if they found nothing in the same files before. Raises Fault.
     """
     studies: dict[str, Study] = {}
     for folder in folders:
@@ -126,12 +136,13 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
             _load_code(folder)
         study, faults, lost = _read(folder, changed)
         if not known:
+            # It imports planners and figures, which a study that was checked before does not need.
             from bezierplan.study.checks import Checks
 
             if faults := [*faults, *Checks(study, lost).check()]:
                 more = f" (with the configuration's settings: {changed})" if changed else ""
                 raise Fault(*(f"{line}{more}" for line in faults))
-            # Without a place to keep it in, it is checked again.
+            # If the mark cannot be written, the study is checked again next time.
             with contextlib.suppress(OSError):
                 stamp.parent.mkdir(parents=True, exist_ok=True)
                 stamp.touch()
@@ -145,9 +156,10 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
 
 
 def _find_stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
-    """The file that says of a study that it was checked and had no fault. Its name is a digest of
-    all that a fault could come from: the files of the study, the settings of a configuration, this
-    package and its libraries.
+    """Return the file that marks a study as checked and without a fault.
+
+    Its name is a digest of all that a fault could come from: the files of the study, the settings
+    of a configuration, this package and its libraries.
     """
     parts = [
         repr(changes),
@@ -161,12 +173,14 @@ def _find_stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
 
 
 _WRITTEN = frozenset(("__pycache__", "results", ".snakemake"))
-"""Folders that Python and the workflow write, where a study's folder is the working folder."""
+"""Folders that Python and the workflow write, also where a study's folder is the working folder."""
 
 
 @cache
 def _describe_package() -> list[str]:
-    """The contents of this package, Python, and when a library beside pydantic came or went."""
+    """Return what this package and its environment are: the digests of its files, the version of
+    Python, and when a library was last installed or removed.
+    """
     libraries = Path(pydantic.__file__).parents[1]
     return [
         sys.version,
@@ -176,8 +190,8 @@ def _describe_package() -> list[str]:
 
 
 def _describe_contents(folder: Path) -> list[str]:
-    """All below a folder, but for what is written there: names, where links lead, and digests of
-    files.
+    """Return a line for each path below a folder, except for what is written there: its name, where
+    it leads, and the digest of its content.
     """
     lines = []
     for path in sorted(folder.rglob("*")):
@@ -189,7 +203,7 @@ def _describe_contents(folder: Path) -> list[str]:
 
 
 def read_study(folder: Path) -> Study:
-    """The study in a folder, with each of its files checked on its own. Raises Fault."""
+    """Read the study in a folder, and check each of its files on its own. Raises Fault."""
     _load_code(folder)
     study, faults, _ = _read(folder, {})
     if faults:
@@ -209,11 +223,11 @@ def _load_code(folder: Path) -> None:
 
 
 def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
-    """The study in a folder, as far as its files are sound, the faults of the rest, and the names
-    of entries that are left out for them. Raises Fault if they are in experiments.yaml.
+    """Read the study in a folder as far as its files are sound. Return it with the faults, and with
+    the names of the entries that are left out for these. Raises Fault if too little is left.
 
-    changes: settings that take the place of those of the same name there; those of one planner are
-    taken one by one.
+    changes: settings that take the place of those of the same name in experiments.yaml; those of
+    one planner are replaced one by one.
     """
     content, faults, invalid, broken = {}, [], [], []
     for name, model in FILES.items():
@@ -233,14 +247,15 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
         raise Fault(*strange)
     for name, value in changes.items():
         own = content["settings"].get(name)
+        # The settings of one planner are a mapping: those that stay keep their values.
         content["settings"][name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
-    return Study.of(folder, content), faults, invalid
+    return Study.build(folder, content), faults, invalid
 
 
 def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[str]:
-    """Faults of YAML files that nothing reads: their names may be misspelt."""
+    """Return a fault for each YAML file that nothing reads: its name may be misspelt."""
     known = [*(f"{name}.yaml" for name in FILES), "verdict.yaml"]
     maps = [
         name for home in workspaces.values() for _, what, name in find_names(home) if what == "file"
@@ -254,6 +269,7 @@ def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[s
 
 def check_names(studies: Mapping[str, Study]) -> None:
     """Raise Fault for a study whose results or targets would clash with others."""
+    # A study is a target of the workflow by its name, and so is every rule.
     rules = [file.read_text() for file in (TREE / "workflow" / "rules").glob("*.smk")]
     targets = {"default", *re.findall(r"^(?:use )?rule (?:\w+ as )?(\w+)", "\n".join(rules), re.M)}
     for key, study in studies.items():

@@ -1,4 +1,4 @@
-"""One run again, from its name alone."""
+"""Repeat one run, given its name."""
 
 from collections.abc import Mapping
 
@@ -14,10 +14,10 @@ from bezierplan.study.jobs import build_chunk
 
 
 def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
-    """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem
-    and bound.
+    """Repeat the run named `study/experiment/condition/method/repeat`; return one row with its
+    problem and bound.
 
-    Raises Fault, which states the unknown part of the name.
+    Raises Fault, naming the unknown part of the name.
     """
     parts = name.split("/")
     if len(parts) != 5:
@@ -47,7 +47,7 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
 def _run_again(
     chunk: Chunk, condition: Condition, repeat: int, study: Experiments
 ) -> results.Results:
-    """A run, or a drive in a world that moves."""
+    """Repeat a run, or a drive in a changing world."""
     made, moving = problems.build_all(
         build_problems_job(study, chunk.experiment, "full"), study.folder
     )

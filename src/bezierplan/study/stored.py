@@ -1,5 +1,5 @@
-"""The files of a scale, and the job that makes each: one account, by which the workflow runs jobs
-again, and by which `verify` asks whether a file is still what its job makes.
+"""The files of a scale, and the job that makes each. By this one account the workflow runs jobs
+again, and `verify` asks whether a file is what its job makes.
 """
 
 import os
@@ -19,14 +19,16 @@ from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
 Made = tuple[Job, list[str]]
-"""A job and the files that it makes, below the folder of a scale."""
+"""A job, and the files that it makes, relative to the folder of a scale."""
 
 READINGS, ALTERNATIVES = "readings", "alternatives"
-"""Folders in the results of a study, of those of the study under other values."""
+"""Folders in the results of a study that hold those under other values of its assumptions."""
 
 
 def list_places(studies: Studies) -> Studies:
-    """Return studies, also under other values of their assumptions, by the place of results."""
+    """Return place of results -> study, also for the studies under other values of their
+    assumptions.
+    """
     by_place = dict(studies)
     for key, study in studies.items():
         for folder, under in (
@@ -40,9 +42,11 @@ def list_places(studies: Studies) -> Studies:
 def find_home(
     places: Studies, own_place: str, scale: str, experiment: str, method: str = ""
 ) -> str:
-    """Return where the problems of an experiment are, or the runs of a method, for the study at a
-    place. What a reading does not change, it shares with the study; what an alternative does not,
-    with the default among the alternatives, which has as few runs.
+    """Return the place where the problems of an experiment lie, or the runs of a method, for the
+    study at `own_place`.
+
+    A reading shares what it does not change with the study. An alternative shares it with the
+    default among the alternatives, which has as few runs.
     """
     key, *below = own_place.split("/")
     default = f"{key}/{ALTERNATIVES}/{alternatives.DEFAULT}" if ALTERNATIVES in below else key
@@ -55,8 +59,10 @@ def find_home(
 def yield_jobs(
     places: Studies, scale: str, below: Collection[str], root: str = page.RESULTS
 ) -> Iterator[Made]:
-    """Yield what the workflow can make at a scale. below: places of studies under other values that
-    count. root: as for `page.list_artefacts`.
+    """Yield all jobs of a scale with their files.
+
+    below: the places of studies under other values that count. root: the folder of all scales, as
+    in `page.list_artefacts`.
     """
     studies = {own_place: study for own_place, study in places.items() if own_place == study.key}
     for own_place, study in places.items():
@@ -80,7 +86,7 @@ def yield_jobs(
 def _yield_results(
     places: Studies, own_place: str, scale: str, experiments: Iterable[str]
 ) -> Iterator[Made]:
-    """Yield problems and runs of experiments that are made at a place, with files in its folder."""
+    """Yield the jobs of problems and runs whose files lie at a place, with paths relative to it."""
     study = places[own_place]
     for name in experiments:
         if find_home(places, own_place, scale, name) == own_place:
@@ -90,6 +96,7 @@ def _yield_results(
             if find_home(places, own_place, scale, name, method) != own_place:
                 continue
             folder = f"runs/{name}/{method}"
+            # Times are apart from runs, because they cannot be reproduced.
             ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
             for number in jobs.list_chunks(study, name, method, scale):
                 files = [f"{folder}/{number}{end}.parquet" for end in ends]
@@ -98,10 +105,10 @@ def _yield_results(
 
 
 def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
-    """Yield what shows the runs of a study, with files in its folder."""
+    """Yield the jobs that show the runs of a study, with files relative to its folder."""
     for table in study.tables:
         csv, tex, *others = study.files_of(table)
-        of_runs = table in study.compared()
+        of_runs = table in study.find_tables_of_runs()
         make = jobs.build_table_of_runs if of_runs else jobs.build_table_without_runs
         yield make(study, scale, table), [csv, *others]
         yield jobs.build_latex(study, scale, table), [tex]
@@ -117,9 +124,8 @@ def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
 def build_verification(
     places: Studies, scale: str, root: str, files: Collection[str]
 ) -> Verification:
-    """Return the job that lists files of a scale, with the account of each, and that of the
-    page.
-    """
+    """Build the job that lists the files of a scale, with the account of each and of the page."""
+    # A study under other values lies three folders deep: study/readings/name.
     below = {"/".join(file.split("/")[:3]) for file in files}
     accounts = [
         (own, job.key, job.account)
@@ -135,8 +141,9 @@ def build_verification(
 
 
 def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str, Job]:
-    """Return the job that makes each file of a scale. listed: the files of its list. What shows
-    several studies shows those of these files.
+    """Return file -> the job that makes it, for a scale.
+
+    files: those in the scale's list. Files that show several studies show those of these files.
     """
     scale, root = folder.resolve().name, f"{folder}/../"
     keys = {name.split("/")[0] for name in files}
@@ -152,9 +159,11 @@ def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str
 
 
 def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Return where the studies lie whose results a scale's folder holds, by name: as a
-    configuration, further words or the page say, or in the working folder. Raises Fault for one
-    that is in none of these, for a folder of no scale, and FileNotFoundError without runs.
+    """Return study -> the word that locates it, for all studies with results in a scale's folder.
+
+    config, words: where studies lie; then the page says it, and the working folder is searched
+    last. Raises Fault for a study that is in none of these and for a folder of no scale, and
+    FileNotFoundError if there are no runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
     on_page = reading.read_page_studies(folder).items()
@@ -178,7 +187,7 @@ def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> d
 
 
 def find_strangers(folder: Path, names: Collection[str]) -> list[Path]:
-    """Return the files of a scale, but for logs, that are none of those that its jobs make."""
+    """Return the files of a scale, logs excepted, that none of its jobs makes."""
     files = (file.relative_to(folder) for file in sorted(folder.rglob("*")) if file.is_file())
     return [
         folder / file

@@ -11,7 +11,9 @@ workspaces = ("grid",)
 
 
 def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
-    """The shortest of some polylines through a random point whose samples are in free cells."""
+    """Return the shortest of some polylines through a random point whose samples lie in
+    free cells.
+    """
     grid, best, shortest, history = problem.workspace, None, np.inf, []
     x_low, x_high, y_low, y_high = grid.bounds
     for middle in rng.uniform((x_low, y_low), (x_high, y_high), (tries, 2)):

@@ -8,7 +8,7 @@ claims that of the decisive one. `Judged`: how sure a claim's verdict is, and wh
 `Limits`: what a comparison could find, and the printed numbers. `Notes`: what a reader should know.
 """
 
-from bezierplan.running.columns import declared, read_tables
+from bezierplan.running.columns import read_columns, read_tables
 
 Named, Sentence, Compared, Effect, Judged, Limits, Notes = read_tables(__file__)
 
@@ -18,4 +18,4 @@ TABLES = {
 }
 """Name of a table -> what declares its columns, in their order."""
 
-CLAIM_COLUMNS, CHECK_COLUMNS = (list(declared(*names)) for names in TABLES.values())
+CLAIM_COLUMNS, CHECK_COLUMNS = (list(read_columns(*names)) for names in TABLES.values())

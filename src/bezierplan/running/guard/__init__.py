@@ -1,3 +1,3 @@
-"""Planners: whether a file is one, what executes it, and the process of its own for one that is
-not of this package.
+"""Planners as guests: the check that a file is one, its execution, and a separate process for each
+that is not of this package.
 """

@@ -27,10 +27,10 @@ from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
 LIMIT = 600.0
-"""Seconds that one plan may take, compilation included."""
+"""Seconds that one plan may take, compiling included."""
 
 SEEDS = (0, 0, 1, 2)
-"""Of the generators of a problem's runs."""
+"""Seeds of a problem's runs; the first two are equal, so their plans must be."""
 
 SEALED = "sealed target"
 
@@ -54,8 +54,9 @@ _HALF = 0.55
 
 
 class ContractFinding(NamedTuple):
-    """The result of one test of the contract on one problem. detail: the fault if it failed,
-    otherwise additional information.
+    """The result of one test of the contract on one problem.
+
+    detail: the fault if it failed, otherwise additional information.
     """
 
     problem: str
@@ -69,12 +70,12 @@ class ContractFinding(NamedTuple):
 
 
 def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFinding]:
-    """Findings on a planner, given as a name or the path of a file, with these settings; computed
-    lazily. One in a file is run in another process as well, where `hash`, the order of sets and the
-    addresses of objects differ.
+    """Test a planner, given as a name or the path of a file, with these settings; yield a finding
+    for each fact and problem.
 
-    Raises Fault, in one line, before the first finding: for a file that is not a planner, and for
-    missing or invalid settings.
+    A planner's file also runs in another process, where `hash`, the order of sets and the addresses
+    of objects differ. Raises Fault, in one line, before the first finding: for a file that is not a
+    planner, and for missing or invalid settings.
     """
     if not is_file(planner) and planner not in list_planners():
         raise Fault(
@@ -92,14 +93,14 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFi
 
 
 def list_problems(module: ModuleType) -> Iterator[Problem]:
-    """The problems of a planner, on the kinds of workspace that it serves in turn."""
+    """Yield the problems for a planner, on the kinds of workspace that it serves in turn."""
     kinds = cycle(getattr(module, "workspaces", interface.KINDS.values()))
     for (title, rows), kind in zip(_PICTURES.items(), kinds):
         yield build_drawn_problem(kind, title, rows)
 
 
 def build_drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
-    """A picture as a problem on a kind of workspace."""
+    """Build a problem on a kind of workspace from a picture (`_PICTURES`)."""
     cell = _CELLS.get(title, 1.0)
     lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
     home = from_lines(lines, cell, "unit")
@@ -125,13 +126,14 @@ def build_drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem
 def _find_faults(
     planner: str, module: ModuleType, settings: dict[str, Any]
 ) -> Iterator[ContractFinding]:
+    """Yield the findings of `check_planner`."""
     by_name = {problem.name: problem for problem in list_problems(module)}
     keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
     exact, names = getattr(module, "exact", False), {*TAKEN, *settings}
     plans_of: dict[str, list[Plan]] = {}
     draws = False
     for name, problem in by_name.items():
-        # A slow planner's findings come one problem after the other.
+        # A problem at a time, so that a slow planner's findings appear early.
         try:
             (made,) = run_planner(planner, settings, {name: problem}, SEEDS).values()
         except PlannerFailure as failure:
@@ -150,6 +152,7 @@ def _find_faults(
             yield ContractFinding(name, fact, not fault, fault or detail)
     if not plans_of:
         return
+    # A planner of this package runs in this process alone.
     if is_file(planner):
         met = {name: by_name[name] for name in plans_of}
         for name, (there,) in run_planner(planner, settings, met, SEEDS[:1], 1).items():
@@ -172,8 +175,10 @@ def run_planner(
     seeds: Sequence[int],
     hashing: int = 0,
 ) -> dict[str, list[worker.Reply]]:
-    """Plans by problem, one from each generator; of a file in a process of its own with a seed of
-    `hash`. Raises PlannerFailure.
+    """Run a planner on problems, once with each seed; return problem -> replies. Raises
+    PlannerFailure.
+
+    hashing: the seed of `hash` in the separate process of a planner's file.
     """
     name, work = f"planner {planner}", worker.Work(planner, by_name)
     tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
@@ -184,7 +189,7 @@ def run_planner(
         else worker.run_tasks(work, tasks)
     ):
         task = tasks[reply.number]
-        with answer.of(task.name):
+        with answer.wrap_errors(task.name):
             plan = answer.convert_answer(reply.result)
             by_problem.setdefault(task.problem, []).append(reply._replace(result=plan))
     return by_problem
@@ -193,6 +198,7 @@ def run_planner(
 def _is_valid(
     plans: list[Plan], problem: Problem, names: set[str], first: Plan, finite: bool
 ) -> tuple[str, str]:
+    """Return a detail on plans, and the first fault that makes one unfit for the runs table."""
     for plan in plans:
         try:
             answer.accept_answer(plan, problem, names)
@@ -203,6 +209,7 @@ def _is_valid(
 
 
 def _check_history(plans: list[Plan], keeps_best: bool) -> str:
+    """Return what is wrong with the histories of plans; empty if nothing is."""
     try:
         for plan in plans:
             answer.check_history(plan, keeps_best)
@@ -212,7 +219,9 @@ def _check_history(plans: list[Plan], keeps_best: bool) -> str:
 
 
 def _check_budget(plans: list[Plan], budget: float) -> tuple[str, str]:
-    """The number of evaluations may differ from generator to generator: a search may end early."""
+    """Return the numbers of evaluations, and a fault if one is above the budget. They may differ
+    from seed to seed: a search may end early.
+    """
     used = sorted({plan.evaluations for plan in plans})
     if used[-1] > budget:
         return "", f"{used[-1]} evaluations; expected at most {budget}"
@@ -225,8 +234,8 @@ def _check_budget(plans: list[Plan], budget: float) -> tuple[str, str]:
 
 
 def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]:
-    """Only a planner that declares itself exact can fail for its claims; no way leads to a sealed
-    target.
+    """Return how many claims the checker confirms, and a fault if a planner that declares itself
+    exact claims too much, or a path leads to a sealed target.
     """
     blocked = build_region(problem.workspace)
     feasible = [
@@ -241,7 +250,9 @@ def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str
 
 
 def _compare_repeats(first: Plan, again: Plan) -> str:
-    """What is wrong if two runs with the same generator do not have the same bits."""
+    """Describe the first field in which two runs with the same seed differ in any bit; empty if
+    none does.
+    """
     one, other = ([*map(repr, plain.pack(plan)["Plan"])] for plan in (first, again))
     field = next((name for name, *two in zip(Plan._fields, one, other) if two[0] != two[1]), "")
     return field and (

@@ -1,8 +1,7 @@
-"""Whether a file is a planner: the checks that come before any run, for studies and for the
-contract tests alike.
+"""Check that a file is a planner, before any run: for studies and for the contract tests.
 
-A file of unknown origin is first executed in a process of its own (`guard`), for it may end or
-stall the one that it is in.
+A file of unknown origin is first executed in a process of its own (`guard`), because it may end or
+stall the process that it is in.
 """
 
 import copy
@@ -24,15 +23,15 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
 KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
-"""Type of a workspace -> its kind, by which planners say what they serve."""
+"""Type of a workspace -> its kind, as planners name it."""
 
 LIMIT = 60.0
 """Seconds for which a planner's file may be executed when it is imported."""
 
 
 def load_planner_module(planner: str, location: str) -> ModuleType:
-    """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with
-    a location, unless it can be executed and has the interface of a planner (`planners`).
+    """Load the module of a planner, given as a name or the path of a file. Raises Fault, beginning
+    with a location, unless it can be executed and has the interface of a planner (`planners`).
     """
     if is_file(planner):
         try:
@@ -46,8 +45,8 @@ def load_planner_module(planner: str, location: str) -> ModuleType:
 
 
 def import_planner(planner: str) -> tuple[ModuleType | None, str]:
-    """The module of a planner, which is executed in this process, and what is wrong with it: empty
-    if nothing is.
+    """Import a planner in this process; return its module and what is wrong with it, empty if
+    nothing is.
     """
     try:
         module = load_planner(planner)
@@ -59,8 +58,8 @@ def import_planner(planner: str) -> tuple[ModuleType | None, str]:
 
 
 class Traits(NamedTuple):
-    """What a judge has to know of a planner: the names of its settings, whether it uses no random
-    numbers, and whether its objective is the best of its history.
+    """The traits of a planner by which its answers are judged: the names of its settings, whether
+    it uses no random numbers, and whether its objective is the best of its history.
     """
 
     settings: list[str]
@@ -69,8 +68,8 @@ class Traits(NamedTuple):
 
 
 def read_traits(planner: str) -> Traits:
-    """Those of a planner, given as a name or the path of a file, which is not executed in this
-    process. Raises PlannerFailure if it cannot be executed.
+    """Return the traits of a planner, given as a name or the path of a file; a file is not executed
+    in this process. Raises PlannerFailure if it cannot be executed.
     """
     if is_file(planner):
         try:
@@ -82,7 +81,9 @@ def read_traits(planner: str) -> Traits:
 
 @cache
 def _describe_file(planner: str) -> Traits:
-    """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
+    """Return the traits of a planner's file. Raises PlannerFailure unless it has the interface of
+    one.
+    """
     file = str(Path(planner).resolve())
     work = partial(describe_in_process, planner=file)
     (said,) = process.run_function(work, "when it is imported", LIMIT)
@@ -92,12 +93,15 @@ def _describe_file(planner: str) -> Traits:
 
 
 def describe_in_process(begin: Callable[[str], None], planner: str) -> Iterator[Traits | str]:
-    """The traits of a planner's file, or what is wrong with it, for a process of its own."""
+    """Yield the traits of a planner's file, or what is wrong with it. It runs in a process of its
+    own.
+    """
     module, fault = import_planner(planner)
     yield fault or _read_traits(module)
 
 
 def _read_traits(module: ModuleType) -> Traits:
+    """Return the traits that a planner's module declares."""
     return Traits(
         [*read_settings(module)],
         bool(getattr(module, "deterministic", False)),
@@ -106,10 +110,11 @@ def _read_traits(module: ModuleType) -> Traits:
 
 
 def ask(function: Callable[..., Any], location: str, *arguments: Any) -> None:
-    """Call a planner's `check` or `serves`, which raises ValueError to report a problem, with
-    copies. Raises Fault, beginning with a location.
+    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises
+    Fault, beginning with a location.
     """
     try:
+        # Copies, so that the function cannot change the settings of later runs.
         function(*map(copy.copy, arguments))
         return
     except ValueError as error:
@@ -122,7 +127,7 @@ def ask(function: Callable[..., Any], location: str, *arguments: Any) -> None:
 
 
 def find_interface_fault(module: ModuleType) -> str:
-    """What a module lacks to be a planner; empty if nothing."""
+    """Describe what a module lacks to be a planner; empty if nothing."""
     plan = getattr(module, "plan", None)
     if not callable(plan) or isinstance(plan, type):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
@@ -165,9 +170,8 @@ def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> N
 
 
 def check_settings(module: ModuleType, settings: dict[str, Any], location: str) -> None:
-    """Check a planner's settings: all are there, each has the right type and range, and the
-    planner's own `check` accepts them. Names of no setting are ignored. Raises Fault, beginning
-    with a location.
+    """Raise Fault, beginning with a location, unless all settings of a planner are there, have the
+    right types and ranges, and satisfy the planner's own `check`. Other names are ignored.
     """
     declared = read_settings(module)
     missing = {name: each for name, each in declared.items() if name not in settings}
@@ -185,6 +189,7 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
 
 
 def _find_workspaces_fault(kinds: Any) -> str:
+    """Describe what is wrong with a planner's `workspaces`; empty if nothing."""
     if not isinstance(kinds, tuple | list):
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
     for kind in kinds:

@@ -1,5 +1,5 @@
-"""What planners make as plain values, for text, and back: named tuples and arrays keep their kind
-and all bits of their numbers.
+"""Turn planners' results into plain values, for text, and back. Named tuples and arrays keep their
+kind and all bits of their numbers.
 """
 
 from typing import Any
@@ -17,7 +17,7 @@ _ARRAY = "Array"
 
 
 def pack(value: Any) -> Any:
-    """A value as text can hold it."""
+    """Return a value in a form that text can hold."""
     if isinstance(value, np.ndarray):
         return {_ARRAY: value.astype(float).tolist()}
     if isinstance(value, tuple(_KINDS.values())):
@@ -26,7 +26,7 @@ def pack(value: Any) -> Any:
 
 
 def unpack(value: Any) -> Any:
-    """The value that was packed. Raises TypeError or ValueError for what is none."""
+    """Return the value that `pack` packed. Raises TypeError or ValueError for any other."""
     if isinstance(value, list):
         return [*map(unpack, value)]
     if not isinstance(value, dict) or len(value) != 1:

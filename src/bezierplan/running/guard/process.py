@@ -1,7 +1,7 @@
-"""Planners that are not in this package, each in a process of its own: a run is a file in and a
-file out.
+"""Run planners that are not in this package in separate processes: a run is a file in and a file
+out.
 
-A command (`worker`) reads what to do from a file and appends lines to another one: the name of each
+A command (`worker`) reads its work from a file and appends lines to another one: the name of each
 run that begins, and each answer, as plain values. Nothing else comes back. The process has its own
 process group, an empty working folder, a fixed hash seed and limits.
 """
@@ -29,12 +29,12 @@ from bezierplan.running.jobs.watchdog import PlannerFailure, describe_end
 logger = logging.getLogger(__name__)
 
 MOST_PRINTED = 20_000
-"""Characters of what a planner prints that come into the log."""
+"""Most characters of a planner's own output that the log keeps."""
 
 # Longest pause, in seconds, between two looks at whether a process is done.
 _LOOK = 0.05
 _STARTS = 60
-"""Seconds that a process of runs has at least to start."""
+"""Seconds that a process of runs may take at least until its first run begins."""
 
 
 def run_isolated(
@@ -45,9 +45,10 @@ def run_isolated(
     limit: float | None = None,
     hashing: int = 0,
 ) -> Iterator[worker.Reply]:
-    """`worker.run_tasks` in a process of its own, with plain values; before them that of the last
-    of `again` in a process with another seed of `hash`. hashing: that seed. Raises PlannerFailure
-    as `run_function` does.
+    """Run tasks in a separate process, as `worker.run_tasks` does; yield replies with plain values.
+
+    The last task of `again` runs first, in a process with another seed of `hash`. hashing: the seed
+    of `hash` for the others. Raises PlannerFailure as `run_function` does.
     """
     if again:
         for each in run_isolated(work, again[-1:], (), name, limit, hashing + 1):
@@ -66,19 +67,19 @@ def run_function(
     hashing: int = 0,
     starts: float = 0.0,
 ) -> list[Any]:
-    """What a function answers in a process of its own.
+    """Call a function in a separate process, and return what it yields.
 
-    work: the function, which gets another one to call with the name of each run that begins, and
-    yields plain values. name: what messages begin with before a run begins. limit: seconds for each
-    run. hashing: seed of `hash`. starts: seconds that the process has at least until the first run
+    work: the function. It gets another one to call with the name of each run that begins, and
+    yields plain values. name: how messages begin before the first run. limit: seconds for each run.
+    hashing: seed of `hash`. starts: seconds that the process has at least until the first run
     begins, whatever the limit. Raises PlannerFailure, naming the run, if the function raises an
-    exception, the process crashes, ends itself, takes too long or leaves others behind.
+    exception, or the process crashes, ends itself, takes too long or leaves others behind.
     """
     with tempfile.TemporaryDirectory(prefix="bezierplan-") as folder:
         job, lines, printed, empty = (
             Path(folder, part) for part in ("job.pickle", "answers.json", "printed.txt", "empty")
         )
-        # Arrays that cannot be written are restored as such.
+        # Protocol 5 keeps read-only arrays read-only.
         job.write_bytes(pickle.dumps((name, work), protocol=5))
         lines.touch()
         empty.mkdir()
@@ -96,6 +97,7 @@ def run_function(
                 ended = _await_end(process, lines, limit, starts)
             finally:
                 with suppress(ProcessLookupError, PermissionError):
+                    # The whole group, so nothing that the planner has started goes on.
                     os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
         _log(printed, name)
@@ -103,13 +105,15 @@ def run_function(
 
 
 def _build_path() -> str:
-    """Where the process finds this package, and what this one's environment names."""
+    """Return the PYTHONPATH of the process: this package first, then that of this environment."""
     return os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]))
 
 
 def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
-    """How a process has ended; it may take as long as `limit` from one line to
-    the next, and at least `starts` until the first.
+    """Wait for the end of a process, and describe it.
+
+    limit: seconds from one line to the next, after which the process is ended. starts: seconds that
+    it has at least until the first.
     """
     size, since, pause = -1, 0.0, 0.001
     while True:
@@ -123,12 +127,13 @@ def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, star
             allowed = limit if size else max(limit, starts)
             if time.monotonic() - since > allowed:
                 return f"not done within the time limit of {allowed:g} s; it is ended"
+        # The pause grows, so that a short run is noticed at once.
         time.sleep(pause)
         pause = min(2 * pause, _LOOK)
 
 
 def _log(printed: Path, name: str) -> None:
-    """Show the first part of what a process has printed."""
+    """Log the first part of what a process has printed."""
     with printed.open("rb") as output:
         text = output.read(MOST_PRINTED).decode(errors="replace")
     if text.strip():
@@ -139,8 +144,8 @@ def _log(printed: Path, name: str) -> None:
 
 
 def _read(lines: Path, name: str, end: str) -> list[Any]:
-    """The answers among the lines of a process. Raises PlannerFailure, with a line for each run
-    that fails.
+    """Return the answers among the lines of a process. Raises PlannerFailure, with a line for each
+    run that fails.
     """
     replies, failures = [], {}
     # What follows the last line break was cut off.
@@ -156,6 +161,7 @@ def _read(lines: Path, name: str, end: str) -> list[Any]:
             opened.SEEN.update(value)
             break
     else:
+        # Without its last line, the process did not come to its end.
         failures[f"{name}: {end}"] = ""
     if not failures:
         return replies

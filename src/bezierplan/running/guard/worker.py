@@ -1,5 +1,5 @@
-"""What executes planners: those of this package in the process of a job, all others in a process of
-their own, which is this file as a command (`guard`).
+"""Execute planners: those of this package in the process of a job, all others in separate processes
+(`guard.process`), which run this file as a command.
 """
 
 import json
@@ -37,7 +37,7 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
-"""Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
+"""Most bytes of memory, bytes of a file, and CPU seconds of a separate process."""
 
 ALIKE = {
     False: "all repeats are equal and count as one, for it draws no number from the rng that it is "
@@ -45,7 +45,7 @@ ALIKE = {
     True: "all repeats are equal, though it draws numbers from the rng that it is given: has it a "
     "seed of its own?",
 }
-"""What is said of a planner whose repeats are equal, by whether it drew random numbers."""
+"""Did the planner draw random numbers -> message about its equal repeats."""
 
 # Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until
 # those after the first have taken this many seconds, or until one takes so long that its loading
@@ -54,13 +54,15 @@ _ALIKE = 3
 _STABLE = 0.1
 _WARM_UP = 0.2
 _LONG_RUN = 1.0
-# And until there are so many, whatever clocks say.
+# Never more than this many, whatever the clocks say.
 _MOST = 50
 
 
 class Task(NamedTuple):
-    """One run. name: how a message about its planner begins. problem: by name. seed: the parts of
-    the name of its generator, or a number. settings: all of the planner.
+    """One run of a planner.
+
+    name: how a message about its planner begins. problem: its name. seed: the parts of the name of
+    its generator, or a number. settings: all of the planner.
     """
 
     name: str
@@ -69,7 +71,7 @@ class Task(NamedTuple):
     settings: dict[str, Any]
 
     def generator(self) -> np.random.Generator:
-        """Its random numbers."""
+        """Return a new generator with the run's random numbers."""
         return (
             np.random.default_rng(self.seed)
             if isinstance(self.seed, int)
@@ -78,8 +80,8 @@ class Task(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What a planner is for: its function `plan` or `track` on problems, by name; or, with worlds
-    of the problems, drives of a robot by its plans, as a policy says.
+    """The work of a planner: its function `plan` or `track` on problems, by name; or, with the
+    problems' worlds, drives of a robot by its plans under a policy.
     """
 
     planner: str
@@ -88,8 +90,8 @@ class Work(NamedTuple):
     worlds: dict[str, World] | None = None
     policy: dict[str, Any] | None = None
 
-    def once(self, task: Task, rng: np.random.Generator) -> Any:
-        """A plan, a track or a ride."""
+    def run_task(self, task: Task, rng: np.random.Generator) -> Any:
+        """Make a plan, a track or a ride."""
         module, problem = load_planner(self.planner), self.problems[task.problem]
         if self.worlds:
             rules = Policy.model_construct(**self.policy)
@@ -106,7 +108,9 @@ def _plan_for_view(
     view: Problem,
     last: Any,
 ) -> tuple[Plan, Any]:
-    """A plan of a robot for what it sees, as plain values, and what the next one gets as last."""
+    """Plan for a robot's view of its world; return the plan as plain values, and the state that the
+    next one gets as `last`.
+    """
     if not warm:
         return answer.accept_answer(module.plan(view, rng, **settings), view), None
     pair = module.resume(view, rng, last, **settings)
@@ -119,8 +123,10 @@ def _plan_for_view(
 
 
 class Reply(NamedTuple):
-    """What a planner has made. number: of its task; of a repetition, from the end: -1 is the last
-    task. cpu, wall: seconds. drew: whether it drew random numbers from its generator.
+    """The result of a planner for a task.
+
+    number: that of its task; a repetition counts from the end, with -1 for the last task. cpu,
+    wall: seconds. drew: it drew random numbers from its generator.
     """
 
     number: int
@@ -137,17 +143,20 @@ def run_tasks(
     begin: Callable[[str], None] = lambda name: None,
     goes_on: bool = False,
 ) -> Iterator[Reply]:
-    """What a planner makes of tasks, one after the other. again: first the task of warm-up runs
-    before them, of which the first and the last are yielded. begin: told the name of each run.
-    Raises PlannerFailure, naming the run. goes_on: such a failure is the run's result instead.
+    """Run tasks one after the other, and yield a reply for each.
+
+    again: tasks to repeat. The first of them is also the warm-up, whose first and last runs are
+    yielded before all others. begin: gets the name of each run. goes_on: a failure becomes the
+    run's result, and the next run follows; otherwise PlannerFailure, naming the run, is raised.
     """
 
-    def one(number: int, task: Task) -> Reply:
+    def run_one(number: int, task: Task) -> Reply:
+        """Run one task and return the reply."""
         begin(task.name)
         rng = task.generator()
         try:
-            with answer.of(task.name):
-                made = time_call(partial(work.once, task, rng))
+            with answer.wrap_errors(task.name):
+                made = time_call(partial(work.run_task, task, rng))
         except PlannerFailure as failure:
             if not goes_on:
                 raise
@@ -155,14 +164,14 @@ def run_tasks(
         return Reply(number, *made, has_drawn(task.generator(), rng))
 
     if again:
-        yield from warm_up(partial(one, -len(tasks), again[0]))
+        yield from warm_up(partial(run_one, -len(tasks), again[0]))
     for number, task in enumerate(tasks):
-        yield one(number, task)
+        yield run_one(number, task)
 
 
 def has_drawn(before: np.random.Generator, after: np.random.Generator) -> bool:
-    """Whether random numbers were drawn from a generator: it has gone on in its own sequence, which
-    its increment names, or has made others.
+    """Return whether random numbers were drawn from a generator: it has gone on in its own
+    sequence, which its increment identifies, or has spawned others.
     """
     old, new = before.bit_generator.state, after.bit_generator.state
     goes_on = old["state"]["inc"] == new["state"]["inc"] and old != new
@@ -170,15 +179,17 @@ def has_drawn(before: np.random.Generator, after: np.random.Generator) -> bool:
 
 
 def time_call(once: Callable[[], Any]) -> tuple[Any, float, float]:
-    """What a call returns, its CPU seconds and its wall-clock seconds."""
+    """Call a function; return its result, CPU seconds and wall-clock seconds."""
     cpu, wall = measure_cpu_time(), time.perf_counter()
     found = once()
     return found, measure_cpu_time() - cpu, time.perf_counter() - wall
 
 
 def warm_up(once: Callable[[], Reply]) -> list[Reply]:
-    """The first and the last of some runs, which are made until their CPU time is stable or they
-    are long: the first ones of a process load code and wake the processor.
+    """Repeat a run until its CPU time is stable, or it is long; return the first and the last
+    reply.
+
+    The first runs of a process load code and wake the processor.
     """
     taken: list[float] = []
     made: list[Reply] = []
@@ -197,13 +208,13 @@ def warm_up(once: Callable[[], Reply]) -> list[Reply]:
 def yield_plain_answers(
     begin: Callable[[str], None], work: Work, tasks: Sequence[Task], again: Sequence[Task]
 ) -> Iterator[Reply | PlannerFailure]:
-    """Yield `run_tasks` with plain values; of a run that fails, what is wrong with it."""
+    """Yield the replies of `run_tasks` with plain values; a run that fails yields its failure."""
     for reply in run_tasks(work, tasks, again, begin, goes_on=True):
         task, plan = tasks[reply.number], reply.result
         try:
             if isinstance(plan, PlannerFailure):
                 raise plan
-            with answer.of(task.name):
+            with answer.wrap_errors(task.name):
                 if work.function == "plan" and not work.worlds:
                     plan = answer.convert_answer(plan)
             yield reply._replace(result=plain.pack(plan))
@@ -216,9 +227,7 @@ def yield_plain_answers(
 
 
 def run_job_file(job_file: str, lines_file: str) -> None:
-    """Do what a file says, and append lines to another one; then end, whatever a planner has left
-    to do at an exit.
-    """
+    """Do the work in a file, append lines to another one, and end the process."""
     name, work = pickle.loads(Path(job_file).read_bytes())
     end_with_parent()
     for limit, most in LIMITS.items():
@@ -255,12 +264,13 @@ def run_job_file(job_file: str, lines_file: str) -> None:
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):
                 stream.flush()
+        # Not `sys.exit`: a planner may have left work to do at an exit.
         os._exit(0)
 
 
 def _refuse_left(name: str) -> None:
-    """Raise PlannerFailure for children that still run, which are ended on Linux; those of the same
-    process group end with this process.
+    """Raise PlannerFailure if child processes still run; on Linux they are ended. Others of the
+    same process group end with this process.
     """
     tracking = sys.modules.get("multiprocessing.resource_tracker")
     if tracking:  # Python's own child, which would end with this process

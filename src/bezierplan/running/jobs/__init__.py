@@ -1,1 +1,1 @@
-"""Processes of jobs: how they start, end and tell of it."""
+"""Processes of jobs: how they start, end and report."""

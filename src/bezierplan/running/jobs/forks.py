@@ -26,7 +26,7 @@ from typing import Any, TextIO
 from bezierplan.running.jobs import log
 from bezierplan.running.jobs.watchdog import UNDER_WAY, describe_end, end_with_parent
 
-# What the first jobs of a workflow import, which wait for it: each on its own would take as long,
+# The first jobs of a workflow import these, and wait for it: each on its own would take as long,
 # and more time of all cores.
 FIRST = (
     "snakemake.iocontainers",
@@ -36,7 +36,7 @@ FIRST = (
     "bezierplan.running.execution",
     "scipy.sparse.csgraph",
 )
-# What later jobs import, in the order in which they need it.
+# Later jobs import these, in the order in which they need them.
 LATER = (
     "bezierplan.geometry.arc_length",
     "bezierplan.running.recheck",
@@ -51,7 +51,9 @@ LATER = (
 )
 ARRIVES = b"\n"
 PROCESS, ENDED = "process", "ended"
-"""What a job's socket tells beside what begins (`watchdog.begin`): its number, and how it ended."""
+"""Words that come through a job's socket beside what begins (`watchdog.begin`): its number, its
+end.
+"""
 # pyarrow's allocator would start a thread on import; a fork of a process with several threads may
 # lock up, and Python 3.12 warns of it.
 ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
@@ -73,8 +75,8 @@ class Forks:
         self.process: int | None = None  # the number of the process that is forked
 
     def start(self) -> None:
-        """Start the process that is forked, unless it is there: it imports what jobs need while
-        Snakemake has other work.
+        """Start the process that is forked, unless it runs. It imports modules while Snakemake has
+        other work.
         """
         with self._starting:
             if self._control is None:
@@ -123,10 +125,11 @@ class Forks:
             raise subprocess.CalledProcessError(1, name)
 
     def succeeds(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
-        """Run a script in a fork, in this process's folder and with the object that scripts know as
-        `snakemake`; did it come to its end? Of an end that it could not report itself, the log and
-        stderr get a line that names what was under way. benchmark: Snakemake's record of what it
-        takes.
+        """Run a script in a fork, in this process's folder, and return whether it came to its end.
+
+        snakemake: the object that scripts know by this name. benchmark: Snakemake's record of time
+        and memory. If the fork ends without a report of its own, the log and stderr get a line that
+        names what was under way.
         """
         ours, theirs = socket.socketpair()
         with ours:
@@ -148,8 +151,8 @@ class Forks:
         return False
 
     def _hand_over(self, job: socket.socket) -> None:
-        """Send the child's end of a job's socket to the process that is forked, which is started if
-        there is none, or none any more.
+        """Send the child's end of a job's socket to the process that is forked. It is started if it
+        does not run, or no longer runs.
         """
         if self._control is not None:
             with contextlib.suppress(ConnectionError):
@@ -159,6 +162,7 @@ class Forks:
         socket.send_fds(self._control, [ARRIVES], [job.fileno()])
 
     def _begin(self) -> None:
+        """Start the process that is forked."""
         self._control, theirs = socket.socketpair()
         with theirs:
             self.process = subprocess.Popen(
@@ -171,8 +175,10 @@ class Forks:
 
 
 def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
-    """What a job had under way last, how it ended as the operating system says, None if there is no
-    telling, and why it was ended here, if it was: it had taken longer than it may.
+    """Follow a job until it ends.
+
+    Return what it last had under way, its exit status (None if unknown), and why it was ended here:
+    it took longer than it may; empty otherwise.
     """
     process, under_way, end, rest = 0, "", "", b""
     with contextlib.ExitStack() as measuring:
@@ -206,15 +212,16 @@ def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
 
 
 def choose_stream(stream: TextIO | None) -> int | None:
-    """What a process that is started writes to: this process's stream, or nothing if that is
-    closed, for its number is then that of the next file which is opened.
-    """
+    """Return where a new process writes: to this process's stream, or nowhere if that is closed."""
+    # The number of a closed stream is given to the next file that is opened.
     return subprocess.DEVNULL if stream is None else None
 
 
 def serve(control: socket.socket) -> None:
-    """Fork a child for each socket that arrives, after importing what the first jobs need; import
-    what later ones need while none arrives; return when the other end has closed.
+    """Fork a child for each socket that arrives, and return when the other end has closed.
+
+    The modules that the first jobs need are imported before, those of later jobs while none
+    arrives.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     jobs: dict[int, socket.socket] = {}
@@ -245,7 +252,7 @@ def serve(control: socket.socket) -> None:
 
 
 def reap(jobs: dict[int, socket.socket], *_: Any) -> None:
-    """Tell how children have ended, to the other end of their sockets."""
+    """Report through their sockets how children have ended."""
     with contextlib.suppress(ChildProcessError):
         while True:
             child, status = os.waitpid(-1, os.WNOHANG)
@@ -256,7 +263,7 @@ def reap(jobs: dict[int, socket.socket], *_: Any) -> None:
 
 
 def compile_first() -> None:
-    """Compile a function: the first one takes numba half a second more, cached or not."""
+    """Compile one function: the first takes numba half a second more, cached or not."""
     import numba
 
     numba.njit(lambda: 0)()

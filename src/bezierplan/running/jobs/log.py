@@ -19,21 +19,21 @@ from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import describe_in_one_line, escape
 
 LAST = "CRITICAL "
-"""What comes, in the log of a job that has failed, before the line that says why."""
+"""Beginning of the line in a failed job's log that says why it failed."""
 MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
-"""The most frames and lines of a traceback in a log, and the most characters of a line."""
+"""Most frames and lines of a traceback in a log, and most characters of a line."""
 MOST_TOLD = 20
-"""The most runs of a job that are named as faulty, each in a line."""
+"""Most runs of a job that are named as faulty, one line each."""
 
 
 @contextmanager
 def run_job(snakemake: Any) -> Iterator[Any]:
-    """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for
-    the output files.
+    """Run a job in a block, which receives temporary names for the output files.
 
-    The files get their final names when the block ends. An exception is written to the job's log in
-    full and ends the process with a one-line message, which is also the last line of the log; of an
-    end that nothing in the process could report, `forks` tells.
+    snakemake: the script's object of this name. The files get their final names when the block
+    ends. An exception is written to the job's log in full, and ends the process with a one-line
+    message, which is also the last line of the log. Ends that nothing in the process could report
+    are reported by `forks`.
     """
     log = snakemake.log[0]
     end_with_parent()
@@ -65,12 +65,13 @@ def run_job(snakemake: Any) -> Iterator[Any]:
 
 
 def say(line: str) -> None:
-    """Print a line to stderr, with its end, or what another job says could stand on it."""
+    """Print a line to stderr."""
+    # Text and line break in one write, so that no other job's words come between them.
     print(f"{line}\n", end="", file=sys.stderr, flush=True)
 
 
 def report(log: str, line: str) -> None:
-    """Write how a job has ended to its log and to stderr."""
+    """Write to a job's log and to stderr how it has ended."""
     line = f"{escape(line)} (log: {log})"
     with suppress(OSError), open(log, "a", encoding="utf-8") as file:
         file.write(f"{LAST}{line}\n")
@@ -78,8 +79,8 @@ def report(log: str, line: str) -> None:
 
 
 def find_full_disk(error: BaseException | None) -> BaseException | None:
-    """The exception of a full disk that led to another one: libraries fail once more when they
-    close a file that they could not write.
+    """Return the exception of a full disk that led to another one, or None. Libraries fail once
+    more when they close a file that they could not write.
     """
     while error and getattr(error, "errno", None) not in (errno.ENOSPC, errno.EDQUOT):
         error = error.__cause__ or error.__context__
@@ -87,7 +88,7 @@ def find_full_disk(error: BaseException | None) -> BaseException | None:
 
 
 def describe_error(error: BaseException) -> str:
-    """The last lines of an exception's traceback, each of limited length and without control
+    """Return the last lines of an exception's traceback, each of limited length and without control
     characters.
     """
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
@@ -96,10 +97,10 @@ def describe_error(error: BaseException) -> str:
 
 @contextmanager
 def write_whole_files(files: Any) -> Iterator[Any]:
-    """Temporary names in another folder for a job's files, all of one folder; they get their final
-    names once the block succeeds.
+    """Give temporary names in another folder for a job's files, all of one folder; these get their
+    final names once the block succeeds.
 
-    So an existing file is always complete, even if its job was killed. What a killed job left is
+    So an existing file is always complete, even if its job was killed. Remains of a killed job are
     removed when the job runs again.
     """
     first = Path(files[0])
@@ -112,4 +113,5 @@ def write_whole_files(files: Any) -> Iterator[Any]:
         )
         yield parts
         for part, file in zip(parts, files, strict=True):
+            # In one step, since both are in one folder's file system.
             os.replace(part, file)

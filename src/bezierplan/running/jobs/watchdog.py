@@ -1,4 +1,4 @@
-"""How processes that execute planners end, and what is said of it."""
+"""How processes that execute planners end, and the messages about it."""
 
 import ctypes
 import logging
@@ -11,20 +11,20 @@ import time
 PR_SET_PDEATHSIG = 1
 
 UNDER_WAY = logging.getLogger("bezierplan.under_way")
-"""Gets, of the run that a job begins, its limit of time and its name; `forks` listens."""
+"""Gets the time limit and the name of each run that a job begins; `forks` listens."""
 UNDER_WAY.propagate = False
 UNDER_WAY.setLevel(logging.INFO)
 
 LEFT = "leaves a process behind, which is ended; end or join what it starts"
-"""What is said of a planner that leaves a process behind."""
+"""Message about a planner that leaves a process behind."""
 
 
 class PlannerFailure(RuntimeError):
-    """What a planner does that no result may come from; the message names planner and run."""
+    """A planner's fault, from which no result may come. The message names planner and run."""
 
 
 def begin(limit: float | None, name: str) -> None:
-    """Tell who watches this process what begins, and how many seconds it may take."""
+    """Tell whoever watches this process what begins, and how many seconds it may take."""
     UNDER_WAY.info("%s %s", limit or "inf", name)
 
 
@@ -37,15 +37,15 @@ def end_with_parent() -> None:
 
 
 def measure_cpu_time() -> float:
-    """CPU seconds of this process and of its children that have ended, for a planner may leave its
-    work to them.
+    """Return the CPU seconds of this process and of its children that have ended, because a planner
+    may leave its work to them.
     """
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + ended.ru_utime + ended.ru_stime
 
 
 def describe_end(status: int) -> str:
-    """How a process ended before its work was done, from what the operating system says of it."""
+    """Describe how a process ended before its work was done, from the operating system's status."""
     if not os.WIFSIGNALED(status):
         return (
             "its process ended itself with exit status "

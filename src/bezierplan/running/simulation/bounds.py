@@ -1,4 +1,4 @@
-"""What no robot can beat, whatever it knows of the future of its world."""
+"""Bounds that no robot can beat, whatever it knows of the future of its world."""
 
 from dataclasses import replace
 
@@ -11,22 +11,24 @@ from bezierplan.workspaces.worlds import ChangingCells, World
 
 
 def find_least_way(world: World, problem: Problem) -> shortest_paths.Bound:
-    """The shortest way through places that are free at some time: no robot's way is shorter."""
+    """Return the shortest way through places that are free at some time: no robot's way is
+    shorter.
+    """
     if isinstance(world, ChangingCells):
         always = np.all([each.occupied for each in world.maps], axis=0)
         return shortest_paths.shortest_path(
             problem._replace(workspace=replace(world.maps[0], occupied=always))
         )
-    # A circle that moves lets a robot pass that waits.
+    # A robot can wait until a moving circle has passed, so only those that stand still count.
     still = ~world.velocities.any(axis=1)
     stays = Circles(world.bounds, world.centres[still], world.radii[still], world.unit)
     return shortest_paths.shortest_path(problem._replace(workspace=stays))
 
 
 def bound_arrival(world: World, problem: Problem) -> float:
-    """A time, in steps, before which no robot arrives: that of the least way at the world's pace.
+    """Return a time, in steps, before which no robot arrives: the least way at the world's pace.
 
-    Where the map changes once, and no robot can be at a cell that changes before it does, the whole
+    Where the map changes once, and no robot can reach a changing cell before the change, the whole
     way is free on the second map: then the shortest path there is the exact earliest arrival.
     """
     if isinstance(world, ChangingCells) and len(world.maps) == 2:

@@ -1,5 +1,5 @@
-"""A robot among cells that change: from one moment of change to the next along a way, until there
-is something to decide.
+"""A robot among cells that change: it follows a way from one change to the next, until there is
+something to decide.
 """
 
 import itertools
@@ -23,8 +23,8 @@ from bezierplan.workspaces.worlds import ChangingCells
 def follow(
     world: ChangingCells, way: Way, time: float, policy: Policy
 ) -> tuple[int, np.ndarray, np.ndarray]:
-    """Follow a way from its beginning, which has just been planned, from a time on, in steps. If it
-    begins in a cell that has become occupied, the robot first drives out of that.
+    """Follow a newly planned way from a time on, in steps. If it begins in a cell that has become
+    occupied, the robot first drives out of it.
 
     Returns why it ends, and times (n,) with the lengths of way (n,) reached at them; between them
     the robot moves uniformly or waits.
@@ -38,6 +38,7 @@ def follow(
             if checks or policy.waits
             else math.inf
         )
+        # A new way is followed first, because to plan again at the same moment changes nothing.
         if not fresh and policy.replan in ("every_step", "when_changed"):
             event = DUE
             break
@@ -54,6 +55,7 @@ def follow(
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
             time, s = arrival, limit
+            # No moment stands twice, except for the end of the way.
             if s >= way.length or time > times[-1]:
                 times, progress = [*times, time], [*progress, s]
             if s >= way.length:
@@ -74,7 +76,9 @@ def follow(
 
 
 def find_next_event(world: ChangingCells, time: float, policy: Policy) -> float:
-    """The next moment, in steps, at which the world changes, a plan is due, or time is over."""
+    """Return the next moment, in steps, at which the world changes, a plan is due, or time
+    is over.
+    """
     changes = world.moments[world.moments > time]
     due = (
         (math.floor(time / policy.every) + 1) * policy.every
@@ -85,7 +89,9 @@ def find_next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 
 
 def measure_free_length(grid: Grid, way: Way, s: float) -> float:
-    """The length from s on at which a way first enters an occupied cell; infinite if never."""
+    """Return the length at which a way, from length `s` on, first enters an occupied cell; infinite
+    if never.
+    """
     points = way.part(s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))
     if math.isinf(collision_at):
@@ -95,8 +101,8 @@ def measure_free_length(grid: Grid, way: Way, s: float) -> float:
 
 
 def find_way_out(grid: Grid, way: Way) -> float:
-    """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in
-    one, or does not leave them.
+    """Return the length of a way after which it first leaves the occupied cells; 0 if it does not
+    begin in one, or does not leave them.
     """
     cells = build_region(grid)
     if not is_blocked(cells, tuple(way.points[0])):
@@ -104,6 +110,7 @@ def find_way_out(grid: Grid, way: Way) -> float:
     for begin, (start, end) in zip(way.at, itertools.pairwise(way.points)):
         ends = grid.in_cells(np.array([start, end]))
         cuts = np.unique(np.concatenate([[0.0, 1.0], *map(_find_crossings, *ends)]))
+        # Between two crossings of grid lines the way stays in one cell, so its middle decides.
         for enters, leaves in itertools.pairwise(cuts):
             if not is_blocked(cells, tuple(start + (enters + leaves) / 2 * (end - start))):
                 return float(begin + enters * math.dist(start, end))
@@ -111,7 +118,9 @@ def find_way_out(grid: Grid, way: Way) -> float:
 
 
 def _find_crossings(begin: float, end: float) -> np.ndarray:
-    """The shares of a way between two coordinates, in cells, at which it crosses a grid line."""
+    """Return the shares of a leg at which it crosses a grid line, from one of its ends' coordinates
+    to the other, in cells.
+    """
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
     return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
 
@@ -123,27 +132,30 @@ _BACK = 0.01
 def find_way_to_start(
     motion: Motion, grid: Grid, start: Literal["position", "centre"]
 ) -> np.ndarray:
-    """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its
-    cell; if that place is occupied, back along the motion to a free one. Only where the motion ends
-    if there is none.
+    """Return points (n, 2) from where a motion ends to where a plan begins: there, or at the centre
+    of its cell.
+
+    If that place is occupied, they lead back along the motion to a free one; if there is none, only
+    the end of the motion is returned.
     """
     robot = motion.points[-1]
-    begin = _start(grid, robot, start)
+    begin = _find_start(grid, robot, start)
     if begin is not None:
         return np.array([robot, begin])
     back = motion.points[::-1]
     lengths = ways.measure_lengths(back)
     for s in np.arange(_BACK, lengths[-1], _BACK):
         robot = Way(back, lengths).place(s)
-        begin = _start(grid, robot, start)
+        begin = _find_start(grid, robot, start)
         if begin is not None:
             return np.concatenate([back[lengths < s], [robot, begin]])
     return motion.points[-1:]
 
 
 def bound_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:
-    """The least length, in units, of a plan from where a motion ends that goes to the centre of the
-    cell there, as `find_way_to_start` says, and from cell centre to cell centre to the target.
+    """Return the least length, in units, of a plan after a motion: to the centre of its cell, as
+    `find_way_to_start` says, and from cell centre to cell centre to the target.
+
     Infinite if there is none; nan if the target is no centre, or the map too large.
     """
     approach = find_way_to_start(motion, grid, "centre")
@@ -156,10 +168,10 @@ def bound_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float
     return ways.build_way(approach).length + rest
 
 
-def _start(
+def _find_start(
     grid: Grid, place: np.ndarray, start: Literal["position", "centre"]
 ) -> np.ndarray | None:
-    """Where a plan begins for a robot at a place, or None if that is occupied."""
+    """Return where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
         return None if is_blocked(build_region(grid), tuple(place)) else place
     row, column = grid.cell_of(*place)

@@ -1,4 +1,6 @@
-"""A robot among moving circles: step by step along a way, until there is something to decide."""
+"""A robot among moving circles: it follows a way step by step, until there is something to
+decide.
+"""
 
 import math
 from typing import NamedTuple
@@ -12,13 +14,13 @@ from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
 ARRIVED, BLOCKED, DUE, STOPPED, ENDED = range(5)
-"""Why a robot stops following its way: it is there; the rest of the way is blocked; another plan is
-due; something is right in front of it; the world's time is over.
+"""Reasons why a robot stops following its way: it is there; the rest of the way is blocked; another
+plan is due; something is right in front of it; the world's time is over.
 """
 
 
 class _Rules(NamedTuple):
-    """A policy for the kernels."""
+    """A policy in the form that kernels take."""
 
     every: int
     plans: bool
@@ -32,7 +34,7 @@ class _Rules(NamedTuple):
 
 
 def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[int, np.ndarray]:
-    """Follow a way from its beginning, which has just been planned, from a step on.
+    """Follow a newly planned way from a step on.
 
     Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the
     last one may be reached before its step.
@@ -56,13 +58,14 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
 
 @compile_kernel
 def _follow(points, at, step, circles, pace, end, rules):
-    """The loop of `follow`."""
+    """Run the loop of `follow`."""
     centres, velocities, walls, radii = circles
     progress = np.empty(end - step + 1)
     n, s, total = 0, 0.0, at[-1]
     progress[0] = s
     while step + n < end:
-        # A robot that looks ahead needs where the circles are now, when it is where it is.
+        # A robot that foresees motion needs the circles where they are now: their drift is added on
+        # the way.
         places = positions(
             centres, velocities, walls, step + n + (rules.looks_after and not rules.foresees)
         )
@@ -102,11 +105,11 @@ def _follow(points, at, step, circles, pace, end, rules):
 
 @allocation_free
 def is_near(points, at, begin, end, centres, drift, radii, margin, pace):
-    """Whether a robot that drives the part of a way between two lengths comes nearer to a circle
-    than its radius plus a margin.
+    """Return whether a robot that drives the part of a way between two lengths comes nearer to a
+    circle than its radius plus a margin.
 
     points (n, 2), at (n,): as in `Way`. centres (k, 2): when the robot is at `begin`. drift (k, 2):
-    of the circles, in units per step. radii (k,). pace: of the robot, in units per step. All
+    motion of the circles, in units per step. radii (k,). pace: the robot's, in units per step. All
     lengths are in units.
     """
     for k in range(len(centres)):
@@ -127,6 +130,7 @@ def is_near(points, at, begin, end, centres, drift, radii, margin, pace):
             last_x, last_y = dx + ex, dy + ey
             along, size = -(dx * ex + dy * ey), ex * ex + ey * ey
             if along > 0.0 and size > 0.0:
+                # The squared distance is a quadratic in time; this is its least within the leg.
                 share = min(along / size, 1.0)
                 dx, dy = dx + share * ex, dy + share * ey
             if dx * dx + dy * dy < reach * reach:
@@ -143,7 +147,7 @@ def is_near(points, at, begin, end, centres, drift, radii, margin, pace):
 
 @allocation_free
 def _place(points, at, s):
-    """The point after a length of way."""
+    """Return the point after a length of way."""
     i = min(max(np.searchsorted(at, s, side="right"), 1), len(at) - 1)
     if i == 0 or at[i] == at[i - 1]:
         return points[i, 0], points[i, 1]

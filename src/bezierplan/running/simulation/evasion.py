@@ -1,4 +1,4 @@
-"""Where a robot steps that must not stay: aside, to the place that stays free longest."""
+"""The step aside of a robot that cannot stay: to the place that stays free longest."""
 
 import math
 
@@ -16,13 +16,14 @@ _AHEAD = 20.0
 
 
 def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -> np.ndarray:
-    """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle
-    is about to come there.
+    """Return the best place (2,), in units, for the robot at the end of a step: where it stands,
+    unless a circle is about to come there.
 
     It knows what its policy lets it see. A step in which it meets no circle is better than one in
     which it does; of two such steps, the better one begins the drive on which it takes longer until
     a circle comes nearer than `check_margin`; then the one that ends farther from all circles.
-    place (2,): in units. step: the number of the one that begins.
+
+    step: the number of the one that begins.
     """
     walls = np.array(world.walls, dtype=float)
     looked = step + (policy.sees == "after")
@@ -36,6 +37,7 @@ def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Poli
     moves = world.pace * np.concatenate(
         [np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])]
     )
+    # Circles that are seen after their step were a drift behind when it began.
     during = seen - drift if policy.sees == "after" else seen
     return _find_best(
         robot,
@@ -50,11 +52,11 @@ def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Poli
 
 @compile_kernel
 def _find_best(robot, moves, centres, drift, radii, margin, bounds):
-    """The place (2,) at the end of the best step, as `find_refuge` ranks them.
+    """Return the place (2,) at the end of the best step, as `find_refuge` ranks them.
 
-    moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles
-    at the beginning of the step, with their drift (k, 2) in units per step and radii (k,). bounds
-    (4,): of the field, as in `MovingCircles`. Lengths are in units.
+    moves (n, 2): in units per step; the first is to stay. centres (k, 2): the circles at the
+    beginning of the step, with their drift (k, 2) in units per step and radii (k,). bounds (4,):
+    the field, as in `MovingCircles`. Lengths are in units.
     """
     best, best_depth, best_time, best_apart = robot, -np.inf, 0.0, 0.0
     for i in range(len(moves)):
@@ -80,6 +82,7 @@ def _find_best(robot, moves, centres, drift, radii, margin, bounds):
             if (depth, free, apart) > (best_depth, best_time, best_apart):
                 best = robot + np.array([move_x, move_y])
                 best_depth, best_time, best_apart = depth, free, apart
+            # To stay is free as far as the robot looks: it does not move without need.
             if i == 0 and depth == 0.0 and free == _AHEAD:
                 return robot
     return best
@@ -87,7 +90,7 @@ def _find_best(robot, moves, centres, drift, radii, margin, bounds):
 
 @allocation_free
 def _measure_nearest(dx, dy, ex, ey):
-    """Least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
+    """Return the least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
     size = ex * ex + ey * ey
     share = min(max(-(dx * ex + dy * ey) / size, 0.0), 1.0) if size > 0.0 else 0.0
     return math.hypot(dx + share * ex, dy + share * ey)
@@ -95,8 +98,8 @@ def _measure_nearest(dx, dy, ex, ey):
 
 @allocation_free
 def _find_contact(dx, dy, vx, vy, reach):
-    """When a point at (dx, dy) with a velocity comes nearer than `reach` to the origin, in steps;
-    at most `_AHEAD`.
+    """Return when, in steps, a point at (dx, dy) with a velocity comes nearer than `reach` to the
+    origin; at most `_AHEAD`.
     """
     excess, along, size = dx * dx + dy * dy - reach * reach, dx * vx + dy * vy, vx * vx + vy * vy
     if excess < 0.0:

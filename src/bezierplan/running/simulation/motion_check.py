@@ -1,5 +1,5 @@
-"""Whether a robot collided: exact between steps, and without regard to what the robot saw or
-planned.
+"""Decide whether a robot collided: exactly between steps, and independently of what the robot saw
+or planned.
 
 Between two vertices of its way the robot moves uniformly, and so does a circle between two steps;
 the squared distance is a quadratic in time. On cells, the part driven between two changes is judged
@@ -19,8 +19,8 @@ from bezierplan.running.simulation import ways
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 TOUCHING = 2 * checker.TOLERANCE
-"""A robot no deeper in an obstacle than this, in units, touches it: so deep can a path be that the
-checker calls free.
+"""Depth in an obstacle, in units, up to which a robot only touches it. A path that the checker
+calls free can be so deep.
 """
 
 
@@ -31,14 +31,16 @@ class Motion(NamedTuple):
     times: np.ndarray
 
     def at(self, times: np.ndarray | float) -> np.ndarray:
-        """Places (..., 2) at some times."""
+        """Return places (..., 2) at some times."""
         return ways.find_places(self.points, self.times, times)
 
 
 class Verdict(NamedTuple):
-    """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,)
-    least distance to an obstacle in each step, in units, negative inside a circle; in changing
-    cells 0 when colliding, and the border counts. depth: largest depth in an obstacle. tolerance:
+    """The verdict on a motion.
+
+    collision_at: time of the first collision, in steps; nan without one. clearance: (steps,) least
+    distance to an obstacle in each step, in units, negative inside a circle; in changing cells it
+    is 0 when colliding, and the border counts. depth: largest depth in an obstacle. tolerance:
     error of depth and clearance, in units.
     """
 
@@ -49,13 +51,14 @@ class Verdict(NamedTuple):
 
 
 def check(motion: Motion, world: World) -> Verdict:
-    """The verdict on a motion."""
+    """Judge a motion in a world."""
     if isinstance(world, ChangingCells):
         return _check_among_cells(motion, world)
     return _check_among_circles(motion, world)
 
 
 def _check_among_circles(motion: Motion, world: MovingCircles) -> Verdict:
+    """Judge a motion among moving circles."""
     walls = np.array(world.walls, dtype=float)
     hit, clearance = _measure_approach(
         motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING
@@ -77,7 +80,9 @@ def _check_among_circles(motion: Motion, world: MovingCircles) -> Verdict:
 
 @compile_kernel
 def _measure_approach(points, times, centres, velocities, walls, radii, tolerance):
-    """Time of the first collision, infinite without, and least clearance (steps,) in each step."""
+    """Return the time of the first collision, infinite without one, and the least clearance
+    (steps,) in each step.
+    """
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
     clearance = np.full(max(last_step - first_step, 1), np.inf)
     collision_at = np.inf
@@ -102,6 +107,7 @@ def _measure_approach(points, times, centres, velocities, walls, radii, toleranc
                 size, along, apart = ex * ex + ey * ey, dx * ex + dy * ey, dx * dx + dy * dy
                 share = min(max(-along / size, 0.0), 1.0) if size > 0.0 else 0.0
                 nearest = math.hypot(dx + share * ex, dy + share * ey) - radii[k]
+                # A motion that ends exactly with a step belongs to that step, not to the next one.
                 place = min(step - first_step, len(clearance) - 1)
                 clearance[place] = min(clearance[place], nearest)
                 if nearest < -tolerance:
@@ -120,7 +126,7 @@ def _measure_approach(points, times, centres, velocities, walls, radii, toleranc
 
 @allocation_free
 def _compute_relative(points, i, share, before, after, part):
-    """The robot's place on leg i, relative to a circle that has made a share of its step."""
+    """Return the robot's place on leg i, relative to a circle that has made a part of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
     y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
     return x - before[0] - part * (after[0] - before[0]), y - before[1] - part * (
@@ -129,6 +135,7 @@ def _compute_relative(points, i, share, before, after, part):
 
 
 def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
+    """Judge a motion among cells that change."""
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
     regions = [build_region(each) for each in world.maps]
     clearance = np.full(max(last - first, 1), np.inf)
@@ -136,6 +143,7 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     depth = 0.0
     tolerance = 0.0
     inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
+    # Within a cut the map is one and the step is one, so the check of still maps applies.
     cuts = np.unique(
         np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
     )
@@ -156,7 +164,7 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
 
 
 def cut_motion(motion: Motion, begin: float, end: float) -> Motion:
-    """The part of a motion between two times, of at least two vertices."""
+    """Return the part of a motion between two times, with at least two vertices."""
     inside = (motion.times > begin) & (motion.times < end)
     times = np.concatenate([[begin], motion.times[inside], [end]])
     ends = motion.at(np.array([begin, end]))

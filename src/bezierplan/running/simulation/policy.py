@@ -1,4 +1,4 @@
-"""What a robot does when its world changes."""
+"""The policy of a robot: its decisions when its world changes."""
 
 import math
 from typing import Annotated, Literal

@@ -1,4 +1,4 @@
-"""The simulation: plans, drives, and records."""
+"""Simulate a drive: plans, motion, and records of both."""
 
 import itertools
 import math
@@ -21,14 +21,16 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
 
 Planner = Callable[[Problem, Any], tuple[Plan, Any]]
-"""A planner with its settings and random numbers: of a problem and, for a warm start, what it
-returned second with its last plan.
+"""A planner with its settings and random numbers. It takes a problem and, for a warm start, the
+state that it returned beside its last plan.
 """
 
 
 class DrivePlan(NamedTuple):
-    """A plan that the robot made. time: in steps. path: the planner's, or None. length: of the way
-    to it and along it, in units. margin: by which circles were grown, in units. seconds: CPU time.
+    """A plan that the robot made.
+
+    time: in steps. path: the planner's, or None. length: that of the way to it and along it, in
+    units. margin: how much larger the circles were for it, in units. seconds: CPU time.
     evaluations: as in `Plan`.
     """
 
@@ -41,7 +43,7 @@ class DrivePlan(NamedTuple):
 
 
 class Ride(NamedTuple):
-    """A robot's way through a world. arrived: at the target. waited: time, in steps."""
+    """A robot's way through a world. arrived: it reached the target. waited: time, in steps."""
 
     motion: Motion
     arrived: bool
@@ -50,7 +52,7 @@ class Ride(NamedTuple):
 
     @property
     def replans(self) -> int:
-        """Plans after the first."""
+        """Number of plans after the first."""
         return len(self.plans) - 1
 
 
@@ -61,15 +63,18 @@ class _Log:
         self.points, self.times, self.waited = [np.array([place], dtype=float)], [np.zeros(1)], 0.0
 
     def motion(self) -> Motion:
-        """The motion so far, with at least two vertices."""
+        """Return the motion so far, with at least two vertices."""
         points, times = np.concatenate(self.points), np.concatenate(self.times)
+        # A motion of one vertex has no leg to judge.
         if len(times) == 1:
             points, times = np.repeat(points, 2, axis=0), np.repeat(times, 2)
         return Motion(points, times)
 
     def follow(self, along: Way, times: np.ndarray, progress: np.ndarray, pace: float) -> None:
-        """Add a drive along a way: the lengths of it reached at some times, between which the robot
-        waits or drives at its pace. It may reach the last one before its time.
+        """Add a drive along a way: the lengths of it reached at some times.
+
+        Between these the robot waits or drives at its pace. It may reach the last length before its
+        time.
         """
         for k, (begin, end) in enumerate(itertools.pairwise(progress)):
             if end == begin:
@@ -92,7 +97,7 @@ class _Log:
 
 
 def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> Ride:
-    """A robot's way from start to target, until it arrives or the world's time is over."""
+    """Drive from start to target, until the robot arrives or the world's time is over."""
     log, plans, state = _Log(problem.start), [], None
     time = 0.0
     while time < world.end:
@@ -120,7 +125,9 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
 def _follow(
     world: World, along: Way, time: float, policy: Policy
 ) -> tuple[int, np.ndarray, np.ndarray]:
-    """`follow` of the world's kind."""
+    """Follow a way as the world's kind needs it; return why it ends, times, and lengths reached at
+    them.
+    """
     if isinstance(world, ChangingCells):
         return cells.follow(world, along, time, policy)
     event, reached = circles.follow(world, along, round(time), policy)
@@ -128,7 +135,7 @@ def _follow(
 
 
 def _find_place_aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
-    """The place (2,) to which a robot that would stop steps aside; None if it stays."""
+    """Return the place (2,) to which a robot that would stop steps aside; None if it stays."""
     if not policy.evades or isinstance(world, ChangingCells):
         return None
     place = log.points[-1][-1]
@@ -137,7 +144,7 @@ def _find_place_aside(world: World, log: _Log, time: float, policy: Policy) -> n
 
 
 def _find_end_of_wait(world: World, time: float) -> float:
-    """When a robot without a way looks again: after a step, or as soon as a cell changes."""
+    """Return when a robot without a way looks again: after a step, or as soon as a cell changes."""
     changes = (
         world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
     )
@@ -153,23 +160,28 @@ def _plan(
     time: float,
     state: Any,
 ) -> tuple[DrivePlan, Way | None, Any]:
-    """A plan from where the robot is, and the way that it follows then; None if it found none."""
+    """Plan from where the robot is; return the plan, the way that it then follows (None without a
+    path), and the planner's state.
+    """
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, measure_cpu_time()
 
-    def made(path: Path | None, length: float, margin: float) -> DrivePlan:
+    def record_plan(path: Path | None, length: float, margin: float) -> DrivePlan:
+        """Return a plan with the CPU time so far."""
         return DrivePlan(time, path, length, margin, measure_cpu_time() - began, evaluations)
 
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
     if policy.start == "centre" or isinstance(world, ChangingCells):
         approach = cells.find_way_to_start(motion, world.workspace(time), policy.start)
+    # Cells do not grow.
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
     obstacles = build_region(world.obstacles(looked))
     for margin in margins:
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
-            return made(None, 0.0, margin), build_way(approach), state
+            return record_plan(None, 0.0, margin), build_way(approach), state
+        # The next margin may leave both ends free.
         if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
         plan, next_state = planner(seen, state)
@@ -178,13 +190,13 @@ def _plan(
             along = build_way(
                 np.concatenate([approach, build_drivable(plan.path, policy.spacing, obstacles)])
             )
-            return made(plan.path, along.length, margin), along, next_state
-    return made(None, math.inf, math.nan), None, state
+            return record_plan(plan.path, along.length, margin), along, next_state
+    return record_plan(None, math.inf, math.nan), None, state
 
 
 def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:
-    """Whether a place is free in the workspace that a planner sees. Where that is drawn as cells,
-    all of the place's cell must be.
+    """Return whether a place is free in the workspace that a planner sees. Where circles are drawn
+    as cells, the whole cell must be.
     """
     seen = problem.workspace
     if isinstance(world, MovingCircles) and isinstance(seen, Grid):

@@ -10,13 +10,15 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, from_origin, is_blocked
 from bezierplan.workspaces.problem import Path
 
-# A chord this short, in units, is not halved: beside a circle of radius 2 it is as deep in it as
+# A chord this short, in units, is not halved: beside a circle of radius 2 it enters only as deep as
 # the checker calls free.
 _SHORTEST = 1e-4
 
 
 class Way(NamedTuple):
-    """points: (n, 2), in units, successive ones differ. at: (n,) length of the way up to each."""
+    """A polyline. points: (n, 2), in units, successive ones differ. at: (n,) length of the way up
+    to each.
+    """
 
     points: np.ndarray
     at: np.ndarray
@@ -27,37 +29,38 @@ class Way(NamedTuple):
         return float(self.at[-1])
 
     def place(self, s: np.ndarray | float) -> np.ndarray:
-        """Points (..., 2) after given lengths of way."""
+        """Return points (..., 2) after given lengths of way."""
         return find_places(self.points, self.at, s)
 
     def part(self, begin: float, end: float) -> np.ndarray:
-        """The polyline (m, 2) between two lengths of way, of at least two points."""
+        """Return the polyline (m, 2) between two lengths of way, with at least two points."""
         inside = self.points[(self.at > begin) & (self.at < end)]
         return np.concatenate([self.place(begin)[None], inside, self.place(end)[None]])
 
 
 def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
-    """Places (..., 2), at some values, of what moves straight from point to point (n, 2).
+    """Return places (..., 2), at some values, of what moves straight from point to point (n, 2).
+
     at: (n,) the value at each point.
     """
     return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
 
 
 def build_way(points: np.ndarray) -> Way:
-    """A way through points (n, 2); repeated ones are left out, but at least one is kept."""
+    """Build a way through points (n, 2). Repeated ones are left out, but at least one is kept."""
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
     return Way(points, measure_lengths(points))
 
 
 def measure_lengths(points: np.ndarray) -> np.ndarray:
-    """Length (n,) of a polyline (n, 2) up to each of its points."""
+    """Return the length (n,) of a polyline (n, 2) up to each of its points."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
 def build_polyline(path: Path, spacing: float) -> np.ndarray:
-    """The points (n, 2) of a polyline, or chords of another curve whose mean length is at most a
-    spacing, in units.
+    """Return the points (n, 2) of a polyline, or chords of another curve whose mean length is at
+    most `spacing`, in units.
     """
     if path.curve == "polyline":
         return path.points
@@ -65,13 +68,16 @@ def build_polyline(path: Path, spacing: float) -> np.ndarray:
     pieces = len(curves.bezier_pieces(path))
     samples = pieces * max(2, math.ceil(legs / spacing / pieces)) + 1
     points = curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
+    # Sums round; a way begins and ends exactly at the path's own points.
     points[[0, -1]] = path.points[list(curves.ends(path.curve))]
     return points
 
 
 def build_drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
-    """`build_polyline` with further points: a chord of a curve that touches an obstacle can enter
-    it. Such a chord, between two free points, is halved until no part of it does.
+    """Return `build_polyline` of a path, with further points where chords enter an obstacle.
+
+    A chord of a curve that touches an obstacle can enter it. Between two free points it is halved
+    until no part of it does.
     """
     points = build_polyline(path, spacing)
     if path.curve == "polyline" or _is_free(points, obstacles):
@@ -82,10 +88,11 @@ def build_drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
 
 
 def _halve_chords(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
-    """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and
-    more where chords enter an obstacle.
+    """Return points (m, 2) of a path: those given (n, 2), at parameters (n,) as in
+    `curves.point_at`, and more where chords enter an obstacle.
     """
     corners = [points[0]]
+    # A stack with the first chord on top, so that points come out in order.
     open_ = list(itertools.pairwise(zip(at, points)))[::-1]
     while open_:
         begin, until = open_.pop()
@@ -104,13 +111,13 @@ def _halve_chords(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Reg
 
 
 def _is_free(points: np.ndarray, obstacles: Region) -> bool:
-    """Whether a polyline (n, 2) is free."""
+    """Return whether a polyline (n, 2) is free."""
     return math.isinf(find_first_collision(points, obstacles))
 
 
 def find_first_collision(points: np.ndarray, obstacles: Region) -> float:
-    """Where a polyline (n, 2) first enters an obstacle, by chord and share of it; infinite if
-    never.
+    """Return where a polyline (n, 2) first enters an obstacle, as number of the chord and share of
+    it; infinite if never.
     """
     chords = np.stack([points[:-1], points[1:]], axis=1)
     collision_at, _ = checker.find_first_collision(from_origin(chords, obstacles), obstacles)
