@@ -872,7 +872,7 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
         ({"a": 2.0, "b": 1.0, "c": 3.25}, "lowest median: b (1), highest: c (3.25)"),
         ({"a": 2.0, "b": np.inf, "c": 3.0}, "lowest median: a (2), highest: c (3)"),
         ({"a": 1.0, "b": 1.0, "c": 3.0}, "lowest median: a and b (1), highest: c (3)"),
-        ({"a": 1.0, "b": 1.0}, "median 1 of all"),
+        ({"a": 1.0, "b": 1.00001}, "median 1 of all"),
         ({"a": 12345.6, "b": 0.00123456}, "lowest median: b (0.001235), highest: a (12,346)"),
         ({"a": 2.0, "b": np.nan}, ""),
     ],
@@ -900,10 +900,10 @@ def test_a_figure_says_in_the_last_line_of_its_caption_what_is_plain_to_the_eye(
     assert "run" in caption
     assert "lowest" not in caption
     assert last.startswith(
-        "(a) lowest final mean: coarse (26.83), highest: random (46.83). (b), (d) "
+        "(a) lowest final mean: coarse (26.83 units), highest: random (46.83 units). (b), (d) "
     )
     assert "lowest mean length in 3 of 3: coarse, highest mean length in 3 of 3: random" in last
-    assert "(e) lowest median: coarse (27), highest: random (47)" in last
+    assert "(e) lowest median: coarse (27 units), highest: random (47 units)" in last
     assert "\n" not in drawn(results(), CURVATURE).get_label(), "nothing is compared"
 
 

@@ -17,7 +17,7 @@ from bezierplan.figures.page import changes
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import jobs, page, reading
+from bezierplan.study import captions, jobs, page, reading
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -112,7 +112,8 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
     assert repeats["smoke"] != repeats["full"]
     for scale in ("smoke", "full"):
         assert jobs.build_table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
-        assert f"{repeats[scale]} runs of each method" in jobs.build_caption(SONG, "table1", scale)
+        told = captions.build_caption(SONG, "table1", scale).write()
+        assert f"{repeats[scale]} runs of each method" in told
 
 
 def test_the_papers_own_are_the_numbered_ones():

@@ -22,10 +22,11 @@ set_kernel_target()
 from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown
+from bezierplan.figures.caption import read_verdicts
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
-from bezierplan.study import experiments, jobs, page, reading, stored
+from bezierplan.study import captions, experiments, jobs, page, reading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -265,7 +266,18 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escaped(jobs.build_caption(STUDIES[wildcards.study], name, wildcards.scale))
+    made = captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale)
+    judged = Path(f"{ROOT}{wildcards.scale}/{wildcards.study}/claims.csv")
+    return markdown.escaped(made.write(read_verdicts([judged] if judged.is_file() else [])))
+
+
+def judged_by(job):
+    """The claims of the scale, if a caption has a verdict from them."""
+    return lambda wildcards: (
+        [f"results/{wildcards.scale}/{wildcards.study}/claims.csv"]
+        if job(wildcards).caption.is_open
+        else []
+    )
 
 
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]

@@ -1,5 +1,5 @@
-# Figures: the picture in three formats, what its caption says of the runs, and exactly the data
-# drawn in it.
+# Figures: the picture in three formats, exactly the data drawn in it, notes on the runs, and the
+# caption.
 
 
 rule figure:
@@ -16,7 +16,7 @@ rule figure:
         ),
         png=f"{RESULTS}/{{tree}}/{{figure}}.png",
         pdf=f"{RESULTS}/{{tree}}/{{figure}}.pdf",
-        caption=f"{RESULTS}/{{tree}}/{{figure}}.txt",
+        notes=f"{RESULTS}/{{tree}}/{{figure}}.notes.txt",
         data=f"{RESULTS}/{{tree}}/{{figure}}.csv",
     log:
         f"{RESULTS}/logs/{{tree}}/{{figure}}.log",
@@ -27,5 +27,22 @@ rule figure:
     params:
         **params(jobs.build_figure),
         caption=caption,
+    script:
+        "../scripts/job.py"
+
+
+rule caption:
+    input:
+        claims=judged_by(of(captions.build_caption_file)),
+    output:
+        f"{RESULTS}/{{tree}}/{{figure}}.txt",
+    log:
+        f"{RESULTS}/logs/{{tree}}/{{figure}}.txt.log",
+    wildcard_constraints:
+        study=studies_with(DRAWN),
+    conda:
+        "../envs/bezierplan.yaml"
+    params:
+        **params(captions.build_caption_file),
     script:
         "../scripts/job.py"

@@ -84,6 +84,7 @@ rule latex:
             if wildcards.table in STUDIES[wildcards.study].with_published()
             else []
         ),
+        claims=judged_by(of(captions.build_latex)),
     output:
         f"{RESULTS}/{{tree}}/{{table}}.tex",
     log:
@@ -91,6 +92,6 @@ rule latex:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.build_latex),
+        **params(captions.build_latex),
     script:
         "../scripts/job.py"

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job
+from bezierplan.figures.caption import Caption, read_verdicts
 from bezierplan.figures.layout import Layout
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Panel
@@ -23,7 +24,7 @@ class Latex(Job):
     """
 
     label: str
-    caption: str
+    caption: Caption
     note: str | None
     heads: int = 0
     """How many columns name the rows of a table of the paper's form."""
@@ -43,13 +44,26 @@ class Latex(Job):
         if beside:
             table = latex.laid_over(table, *beside, self.heads)
             notes = [comparison.SIGNS_MEAN, *notes]
-        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
+        caption = self.caption.write(read_verdicts(input_files.claims))
+        text = latex.document(table, caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)
+class CaptionFile(Job):
+    """The caption of a figure, as text."""
+
+    caption: Caption
+
+    def run(self, input_files, output_files):
+        """Write the caption."""
+        text = self.caption.write(read_verdicts(input_files.claims))
+        Path(output_files[0]).write_text(f"{text}\n", encoding="utf-8")
+
+
+@dataclass(frozen=True)
 class FigureFiles(Job):
-    """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
+    """A figure: pictures, exactly the data drawn in them, and notes on the runs."""
 
     study: str
     columns: int
@@ -125,7 +139,7 @@ class FigureFiles(Job):
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
         )
         sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
-        Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+        Path(output_files.notes).write_text(f"{figure.get_label()}\n", encoding="utf-8")
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,10 @@ class Study(Experiments, ArtefactsFile):
 
     def files_of(self, name: str) -> list[str]:
         """The files of a table or figure, in the folder of the study's results."""
-        endings = ["svg", "png", "pdf", "csv", "txt"] if name in self.figures else ["csv", "tex"]
+        if name in self.figures:
+            endings = ["svg", "png", "pdf", "csv", "notes.txt", "txt"]
+        else:
+            endings = ["csv", "tex"]
         if name in self.compared():
             endings.append("comparison.csv")
         if name in self.with_published():

@@ -20,10 +20,11 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     VerdictText,
 )
+from bezierplan.analysis.naming import column_name
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
-from bezierplan.figures.jobs import FigureFiles, Latex
+from bezierplan.figures.jobs import FigureFiles
 from bezierplan.places import shorten_path
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
@@ -233,13 +234,6 @@ def build_table_without_runs(study: Study, scale: str, table: str) -> TableWitho
     return TableWithoutRuns(spec, sources=[file] if file else study.published_files(), code=code)
 
 
-def build_latex(study: Study, scale: str, table: str) -> Latex:
-    """The table of a name."""
-    spec, printed = study.tables[table], study.with_published().get(table)
-    heads = len(printed.index) if printed else 0
-    return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
-
-
 def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     """The figure of a name."""
     spec, behind = study.figures[figure], list_methods(study, figure)
@@ -292,37 +286,33 @@ def _list_alternatives(study: Study) -> list[dict[str, str]]:
     return rows
 
 
-def build_caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: title, what the paper says of its own, and the runs behind
-    it. The page has the settings of each method, and the verdicts of claims.
-    """
-    title = study.artefact(artefact).title
-    words = quote_paper(study, artefact)
-    parts = [title, words and f"In print: {words}", find_runs_behind(study, artefact, scale)]
-    return ". ".join(filter(None, parts)) + "."
-
-
-def quote_paper(study: Study, artefact: str) -> str:
-    """What the paper says of its table or figure."""
-    return study.layout[artefact].says if artefact in study.layout else ""
-
-
 def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
-    """The runs of each method behind a table or figure."""
-    parts, told = _list_parts(study.artefact(artefact)), []
+    """Return the runs of each method behind a table or figure, by experiment where they differ."""
+    parts, told = _list_parts(study.artefact(artefact)), {}
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]
         listed = max(len(convert_to_list(where.get("repeat", []))) for where in own)
-        repeats = listed or content.repeats[scale]
-        drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
-        layouts = max(each[scale] for each in drawn)
-        told.append(
-            f"{experiment}: {'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
+        repeats, layouts = listed or content.repeats[scale], count_layouts(study, experiment, scale)
+        told[column_name(experiment, study.labels)] = (
+            f"{'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
             f"run{'s' if repeats > 1 else ''} of each method on each "
             + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
         )
-    return "; ".join(told)
+    if len({*told.values()}) < 2:
+        return next(iter(told.values()), "")
+    return "; ".join(f"{experiment}: {text}" for experiment, text in told.items())
+
+
+def count_layouts(study: Study, experiment: str, scale: str) -> int:
+    """Return the most layouts that are drawn of a problem of an experiment."""
+    problems = (study.problems[name].layouts for name in study.experiments[experiment].problems)
+    return max((layouts or {scale: 1})[scale] for layouts in problems)
+
+
+def count_runs(study: Study, experiment: str, scale: str) -> int:
+    """Return the runs of each method in an experiment, on all layouts of a problem."""
+    return study.experiments[experiment].repeats[scale] * count_layouts(study, experiment, scale)
 
 
 # --------------------------------------------------------------------------------------------------

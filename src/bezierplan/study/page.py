@@ -1,10 +1,9 @@
 """The job that shows all results of a scale: the page."""
 
-import hashlib
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import changes, files, in_printed_order
+from bezierplan.figures.page import files, in_printed_order
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -12,17 +11,15 @@ from bezierplan.figures.page.page_job import (
     PageJob,
     StudyView,
 )
-from bezierplan.machine.digest import compute_content_digest, name_module, read_docstring
-from bezierplan.places import STUDIES
+from bezierplan.machine.digest import name_module, read_docstring
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
-from bezierplan.study import jobs
+from bezierplan.study import captions, jobs
 from bezierplan.study.alternatives import find_default
+from bezierplan.study.captions import list_settings as list_settings
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
 
 RESULTS = "results/"
-_LONG = 80
-"""Characters of a value that stand where settings are compared."""
 
 
 def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
@@ -62,7 +59,10 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
 
 def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     """The page of a scale."""
-    behind, outcome = find_results(studies, scale, root), any(map(_is_of_project, studies.values()))
+    behind, outcome = (
+        find_results(studies, scale, root),
+        any(map(captions.is_of_project, studies.values())),
+    )
     shown = {key: _describe_study(own, scale, root) for key, own in studies.items()}
     return Page(
         PageJob(scale, shown, outcome=outcome and scale != "extended"),
@@ -72,17 +72,11 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     )
 
 
-def _is_of_project(study: Study) -> bool:
-    return study.folder.resolve().is_relative_to(STUDIES)
-
-
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
     artefacts = {
         name: ArtefactView(
-            study.artefact(name).title,
-            jobs.find_runs_behind(study, name, scale),
-            jobs.quote_paper(study, name),
+            captions.build_caption(study, name, scale),
             study.whole(name) if name in study.tables else None,
         )
         for name in list_artefacts(study, scale, root)
@@ -110,38 +104,12 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             *(("claims", "checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
-        changes=changes(study.key, list_settings(study)) if _is_of_project(study) else [],
+        changes=captions.list_changes(study),
         experiments={
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
         },
     )
-
-
-def list_settings(study: Study) -> list[tuple[str, str, str]]:
-    """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
-    settings = {method: study.resolved(method) for method in study.methods}
-    for name, workspace in study.workspaces.items():
-        maps = study.maps([name])
-        content = {"content of the map": compute_content_digest(*maps)} if maps else {}
-        settings[f"workspace {name}"] = workspace.plain() | content
-    for name, problem in study.problems.items():
-        settings[f"problem {name}"] = problem.plain()
-    for name, experiment in study.experiments.items():
-        settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
-    settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
-    settings["presets"] = study.presets
-    return [
-        (owner, setting, _shorten(str(value)))
-        for owner, own in settings.items()
-        for setting, value in own.items()
-    ]
-
-
-def _shorten(text: str) -> str:
-    """A text, of a long one a digest."""
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
 
 
 def has_audit(study: Study) -> bool:

@@ -13,7 +13,7 @@ from bezierplan.analysis.outcome.proof import LIST, PAGE
 from bezierplan.places import shorten_path
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import alternatives, jobs, page, reading
+from bezierplan.study import alternatives, captions, jobs, page, reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
@@ -105,9 +105,11 @@ def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:
         of_runs = table in study.compared()
         make = jobs.build_table_of_runs if of_runs else jobs.build_table_without_runs
         yield make(study, scale, table), [csv, *others]
-        yield jobs.build_latex(study, scale, table), [tex]
+        yield captions.build_latex(study, scale, table), [tex]
     for figure in study.figures:
-        yield jobs.build_figure(study, scale, figure), study.files_of(figure)
+        *pictures, txt = study.files_of(figure)
+        yield jobs.build_figure(study, scale, figure), pictures
+        yield captions.build_caption_file(study, scale, figure), [txt]
     if study.claims:
         files = ["claims.csv", "claim_checks.csv", "claims_by_reading.csv"]
         yield jobs.build_claims(study, scale), files

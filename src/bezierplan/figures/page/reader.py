@@ -75,7 +75,7 @@ def studies(
         claims = _claims(key, described, files)
         counted = of_study(numbers, key)
         own_tables = [
-            _table(key, name, each, folder, described.labels, counted, substitute)
+            _table(key, name, each, folder, described.labels, counted, substitute, claims)
             for name, each in described.tables.items()
         ]
         baseline = substitute.measures if substitute else of_study(measured, key)
@@ -85,7 +85,9 @@ def studies(
             job=described,
             claims=claims,
             tables=own_tables,
-            figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
+            figures=[
+                _figure(key, name, each, folder, claims) for name, each in described.figures.items()
+            ],
             methods=[_method(key, name, each) for name, each in described.methods.items()],
             assumptions=[
                 _assumption(key, each, described.labels) for each in described.assumptions
@@ -122,11 +124,13 @@ def _method(study: str, name: str, method: Any) -> Row:
     }
 
 
-def _artefact(study: str, name: str, artefact: Any) -> Row:
-    """A table or figure: its title, what the paper says of its own, the runs behind it, its
-    address, and the path of its files without endings.
+def _artefact(study: str, name: str, artefact: Any, claims: list[Row]) -> Row:
+    """A table or figure: the parts of its caption, its address, and the path of its files without
+    endings.
     """
-    return artefact._asdict() | {
+    verdicts = {claim["id"]: claim["verdict"] for claim in claims}
+    return artefact.caption._asdict() | {
+        "findings": artefact.caption.judge(verdicts),
         "name": name,
         "address": address(study, name),
         "stem": f"{study}/{choose_tree(name)}/{name}",
@@ -134,10 +138,10 @@ def _artefact(study: str, name: str, artefact: Any) -> Row:
     }
 
 
-def _figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
+def _figure(study: str, name: str, artefact: Any, folder: Path, claims: list[Row]) -> Row:
     """A figure, with the runs that it shows and what is lowest and highest in it, in words."""
-    row = _artefact(study, name, artefact)
-    text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8").strip()
+    row = _artefact(study, name, artefact, claims)
+    text = (folder / f"{row['stem']}.notes.txt").read_text(encoding="utf-8").strip()
     runs, _, extremes = text.partition("\n")
     return row | {"runs": runs, "extremes": extremes}
 
@@ -150,9 +154,10 @@ def _table(
     labels: dict[str, str],
     counted: pd.DataFrame,
     evidence: Evidence | None,
+    claims: list[Row],
 ) -> Row:
     """A table: its numbers next to published ones, or its columns and rows."""
-    row, spec = _artefact(study, name, artefact), artefact.spec
+    row, spec = _artefact(study, name, artefact, claims), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])

@@ -11,7 +11,14 @@ from pydantic import Field
 
 from bezierplan.analysis import naming
 from bezierplan.figures import glance, style
-from bezierplan.figures.groups import axis_label, published, runs_note, show_metric, summary
+from bezierplan.figures.groups import (
+    axis_label,
+    published,
+    runs_note,
+    show_metric,
+    summary,
+    unit_of,
+)
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column
 
@@ -105,5 +112,5 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     return Note(
         "",
         runs_note(frame, options.statistic, "bar"),
-        glance.mostly(metric, frame, x, hue, labels),
+        glance.mostly(metric, frame, x, hue, labels, unit_of(options.metric, scene)),
     )

@@ -22,6 +22,7 @@ from bezierplan.figures.groups import (
     published,
     runs_note,
     show_metric,
+    unit_of,
     values,
 )
 from bezierplan.figures.panels import MetricPanel, Note
@@ -125,6 +126,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     style.name_places(axes, names, axis_label(by, scene))
     show_metric(axes, options.metric, scene, scale=options.scale)
     medians = frame[frame["part"].isin(["median", "none"])]
-    best = glance.extremes("median", medians, by, "value", scene.labels)
+    unit = unit_of(options.metric, scene)
+    best = glance.extremes("median", medians, by, "value", scene.labels, unit)
     where = "method" if by == "method" else "place"
     return Note("", runs_note(frame.dropna(subset=[by]), "box", where), best)

@@ -21,6 +21,7 @@ from bezierplan.figures.groups import (
     published,
     runs_note,
     show_metric,
+    unit_of,
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
@@ -218,5 +219,6 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     show_metric(axes, "objective", scene, options.statistic)
     ends = frame[frame["generation"] == frame["generation"].max()]
     name = f"final {options.statistic}"
-    best = glance.extremes(name, ends, options.hue, "objective", scene.labels)
+    unit = unit_of("objective", scene)
+    best = glance.extremes(name, ends, options.hue, "objective", scene.labels, unit)
     return Note("", runs_note(frame, options.statistic, "line"), best)

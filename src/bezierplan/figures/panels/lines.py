@@ -17,6 +17,7 @@ from bezierplan.figures.groups import (
     runs_note,
     show_metric,
     summary,
+    unit_of,
 )
 from bezierplan.figures.panels import (
     MetricPanel,
@@ -171,6 +172,7 @@ def _of_table(look: dict, points: int) -> dict:
 def _glance(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
     """Which line is lowest and highest at most places, or where the only line is."""
     name = f"{options.statistic} {naming.column_name(options.metric, scene.labels)}"
+    unit = unit_of(options.metric, scene)
     if options.hue is None:
-        return glance.extremes(name, statistics, options.x, "value", scene.labels)
-    return glance.mostly(name, statistics, options.x, options.hue, scene.labels)
+        return glance.extremes(name, statistics, options.x, "value", scene.labels, unit)
+    return glance.mostly(name, statistics, options.x, options.hue, scene.labels, unit)

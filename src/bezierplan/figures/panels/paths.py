@@ -338,5 +338,5 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
         clauses = [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
     clauses.append(feasible_note(frame))
     if np.isfinite(row.get("printed", np.nan)):
-        clauses.append(f"shortest printed {row['printed']:.2f} {unit}")
+        clauses.append(f"shortest printed {amount(format(row['printed'], '.2f'), unit)}")
     return Note(f"length {amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses))

@@ -1,0 +1,146 @@
+"""The captions of a study's tables and figures, and the jobs that write them. Verdicts are those of
+docs/outcome if it is that of the study.
+"""
+
+import csv
+import hashlib
+
+from bezierplan.analysis.claims.claim import Claim
+from bezierplan.figures.caption import MOST_FINDINGS, Caption, Finding, tell, tell_both
+from bezierplan.figures.jobs import CaptionFile, Latex
+from bezierplan.figures.page import SETTINGS, changes
+from bezierplan.machine.digest import compute_content_digest
+from bezierplan.places import STUDIES
+from bezierplan.study import jobs
+from bezierplan.study.definition import Study
+
+Kept = tuple[list[str], dict[str, list[dict[str, str]]]]
+
+_LONG = 80
+"""Characters of a value that stand where settings are compared."""
+_KEPT: dict[int, tuple[Study, Kept]] = {}
+
+
+def build_latex(study: Study, scale: str, table: str) -> Latex:
+    """The table of a name."""
+    spec, printed = study.tables[table], study.with_published().get(table)
+    heads = len(printed.index) if printed else 0
+    return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
+
+
+def build_caption_file(study: Study, scale: str, figure: str) -> CaptionFile:
+    """That of the figure of a name."""
+    return CaptionFile(build_caption(study, figure, scale))
+
+
+def build_caption(study: Study, artefact: str, scale: str) -> Caption:
+    """The caption of a table or figure. The page has the methods' settings, and all claims."""
+    kept = {row["id"]: row for row in _read_kept(study)[1]["claims"]}
+    about = [
+        claim
+        for claim in study.claims
+        if artefact in claim.artefacts and (claim.id in kept or claim.scale in (None, scale))
+    ]
+    about.sort(key=lambda claim: (_is_untestable(claim), bool(claim.finding)))
+    layout = study.layout.get(artefact)
+    return Caption(
+        study.artefact(artefact).title,
+        layout.says if layout and not about else "",
+        [
+            Finding(
+                claim.id,
+                claim.statement.removesuffix("."),
+                _tell(study, claim, kept.get(claim.id), scale),
+                _count_runs(study, claim, scale),
+            )
+            for claim in about[:MOST_FINDINGS]
+        ],
+        _tell_means(study, artefact) if scale == "full" else "",
+        jobs.find_runs_behind(study, artefact, scale),
+    )
+
+
+def _is_untestable(claim: Claim) -> bool:
+    return any(check.test == "untestable" for check in claim.checks)
+
+
+def _tell(study: Study, claim: Claim, kept: dict[str, str] | None, scale: str) -> str:
+    """The verdict in words, as far as it is known before the runs."""
+    if _is_untestable(claim):
+        return tell("untestable", 0)
+    if not kept:
+        return ""
+    verdict, shown = kept["verdict"], kept["verdict_papers_size"]
+    many, few = (_count_runs(study, claim, each) for each in ("extended", "full"))
+    # Some functions look at no run; what they say does not depend on their number.
+    if verdict == shown and all(check.test == "function" for check in claim.checks):
+        many = 0
+    return tell_both(verdict, many, shown if scale == "full" else "", few)
+
+
+def _count_runs(study: Study, claim: Claim, scale: str) -> int:
+    """The runs of each method that a claim is judged on, in the experiment with the most."""
+    experiments = (name for each in claim.checks if each.primary for name in each.experiments)
+    return max((jobs.count_runs(study, name, scale) for name in experiments), default=0)
+
+
+def _tell_means(study: Study, table: str) -> str:
+    """How many runs the means of a table are of, if some leave out runs without a free path."""
+    rows = [row for row in _read_kept(study)[1]["numbers_papers_size"] if row["table"] == table]
+    least = min((int(row["n_ours"]) for row in rows if row["statistic"] == "mean"), default=0)
+    every = jobs.count_runs(study, study.whole(table).experiment, "full") if least else 0
+    left_out = f"Means leave out runs without a free path: at least {least} of {every} remain"
+    return left_out if least < every else ""
+
+
+def list_changes(study: Study) -> list[str]:
+    """Return which settings are not those of docs/outcome, in words; none of a study elsewhere."""
+    return _read_kept(study)[0]
+
+
+def is_of_project(study: Study) -> bool:
+    """Return whether a study lies where those of this project do."""
+    return study.folder.resolve().is_relative_to(STUDIES)
+
+
+def _read_kept(study: Study) -> Kept:
+    """What docs/outcome keeps of a study: which settings differ from its own, and if none does the
+    rows of its tables, by name. It is read once.
+    """
+    if id(study) not in _KEPT:
+        changed = changes(study.key, list_settings(study)) if is_of_project(study) else []
+        tables = {}
+        for name in ("claims", "numbers_papers_size"):
+            file, tables[name] = SETTINGS.with_name(f"{name}.csv"), []
+            if is_of_project(study) and not changed and file.is_file():
+                with file.open(encoding="utf-8", newline="") as rows:
+                    own = (row for row in csv.DictReader(rows) if row["study"] == study.key)
+                    tables[name] = [row for row in own if row["primary"] == "True"]
+        _KEPT[id(study)] = study, (changed, tables)
+    return _KEPT[id(study)][1]
+
+
+def list_settings(study: Study) -> list[tuple[str, str, str]]:
+    """All that a study sets, of a method or of what `kind name` says: that, setting and value."""
+    settings = {method: study.resolved(method) for method in study.methods}
+    for name, workspace in study.workspaces.items():
+        maps = study.maps([name])
+        content = {"content of the map": compute_content_digest(*maps)} if maps else {}
+        settings[f"workspace {name}"] = workspace.plain() | content
+    for name, problem in study.problems.items():
+        settings[f"problem {name}"] = problem.plain()
+    for name, experiment in study.experiments.items():
+        settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
+    settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
+    settings["presets"] = study.presets
+    return [
+        (owner, setting, _shorten(str(value)))
+        for owner, own in settings.items()
+        for setting, value in own.items()
+    ]
+
+
+def _shorten(text: str) -> str:
+    """A text, of a long one a digest."""
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
