@@ -112,7 +112,7 @@ OPEN_DETAIL |= {"reason": "it fits", "source": "inferred", "setting": "genes"}
 def caption(title: str, says: str, *claims: str) -> Caption:
     """A caption with claims whose verdicts only the scale knows."""
     findings = [Finding(name, f"{HOSTILE} ({name})", "", 10) for name in claims]
-    return Caption(title, says, findings, "", "Ten runs")
+    return Caption(title, findings, says, "Ten runs")
 
 
 def job() -> PageJob:

@@ -79,6 +79,6 @@ def test_a_changed_study_tells_its_own_verdicts(tmp_path):
 
 def test_a_table_says_where_means_are_of_fewer_runs():
     own = studies()["meledje"]
-    note = captions.build_caption(own, "table3", "full").note
+    note = captions.build_caption(own, "table3", "full").remark
     assert note == "Means leave out runs without a free path: at least 98 of 100 remain"
-    assert not captions.build_caption(own, "table2", "full").note
+    assert not captions.build_caption(own, "table2", "full").remark

@@ -22,7 +22,6 @@ set_kernel_target()
 from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown
-from bezierplan.figures.caption import read_verdicts
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
@@ -268,7 +267,7 @@ def caption(wildcards, output):
     name = wildcards.get("table") or wildcards.figure
     made = captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale)
     judged = Path(f"{ROOT}{wildcards.scale}/{wildcards.study}/claims.csv")
-    return markdown.escaped(made.write(read_verdicts([judged] if judged.is_file() else [])))
+    return markdown.escaped(made.write([judged] if judged.is_file() else []))
 
 
 def judged_by(job):

@@ -3,7 +3,6 @@
 import csv
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import NamedTuple
 
 from bezierplan.analysis.words import WORDS
@@ -25,14 +24,13 @@ class Finding(NamedTuple):
 
 
 class Caption(NamedTuple):
-    """says: what the paper says of its own, where no claim does. note: which runs means leave out.
+    """remark: what the paper shows, where no claim is about it, or which runs means leave out.
     behind: the runs that it shows.
     """
 
     title: str
-    says: str
     findings: list[Finding]
-    note: str
+    remark: str
     behind: str
 
     @property
@@ -41,30 +39,34 @@ class Caption(NamedTuple):
         return not all(finding.told for finding in self.findings)
 
     def judge(self, verdicts: Mapping[str, str]) -> list[Finding]:
-        """Return the findings whose verdict is known; verdicts: of the scale's claims, by id."""
-        judged = [
-            each._replace(told=each.told or tell(verdicts.get(each.claim, ""), each.runs, "these "))
+        """Return the findings whose verdict is known. verdicts: of the scale's claims, by id."""
+        return [
+            each._replace(told=each.told or tell(verdicts[each.claim], each.runs, "these "))
             for each in self.findings
+            if each.told or each.claim in verdicts
         ]
-        return [each for each in judged if each.told]
 
-    def write(self, verdicts: Mapping[str, str] = MappingProxyType({})) -> str:
-        """Return the caption as one line."""
-        findings = [f"{each.statement}: {each.told}" for each in self.judge(verdicts)]
-        says = f"In the paper: {self.says}" if self.says else ""
+    def write(self, files: Iterable[str | Path] = ()) -> str:
+        """Return the caption as one line. files: the claims of the scale, if it is open."""
+        found = [f"{each.statement}: {each.told}" for each in self.judge(read_verdicts(files))]
         shown = f"Shown: {self.behind}" if self.behind else ""
-        parts = filter(None, [self.title, says, *findings, self.note, shown])
-        return " ".join(f"{part}." for part in parts)
+        return " ".join(f"{part}." for part in (self.title, *found, self.remark, shown) if part)
+
+
+def read_verdicts(files: Iterable[str | Path]) -> dict[str, str]:
+    """Return the verdicts of claims in their primary variant, by id, from files claims.csv."""
+    rows = (
+        row for file in files for row in csv.DictReader(Path(file).read_text("utf-8").splitlines())
+    )
+    return {row["id"]: row["verdict"] for row in rows if row["primary"] == "True"}
 
 
 def tell(verdict: str, runs: int, which: str = "") -> str:
-    """Return a verdict in words with the runs that it rests on; nothing of none.
+    """Return a verdict in words with the runs that it rests on.
 
     >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
     ('contradicted by 4,000 runs', 'not decided by these 10 runs')
     """
-    if not verdict:
-        return ""
     words = {0: "our calculation", 1: "this run" if which else "1 run"}
     return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
 
@@ -76,24 +78,9 @@ def tell_both(verdict: str, runs: int, shown: str, runs_shown: int) -> str:
     'not decided by these 10 runs, contradicted by 4,000'
     """
     many = tell(verdict, runs)
-    if shown == verdict or not _counts(shown) or verdict == "untestable":
+    if shown in ("", verdict, "depends", "untestable") or verdict == "untestable":
         return many
     first = tell(shown, runs_shown, "these ")
-    if _counts(verdict):
-        return f"{first}, {many.removesuffix(' runs')}"
-    return f"{first}, {'and' if shown == 'undecided' else 'but'} {many}"
-
-
-def _counts(verdict: str) -> bool:
-    """Whether a verdict is told with a number of runs."""
-    return bool(verdict) and "{}" in WORDS[verdict].caption
-
-
-def read_verdicts(files: Iterable[str | Path]) -> dict[str, str]:
-    """Return the verdicts of claims in their primary variant, by id, from files claims.csv."""
-    verdicts = {}
-    for file in files:
-        with open(file, encoding="utf-8", newline="") as rows:
-            own = csv.DictReader(rows)
-            verdicts |= {row["id"]: row["verdict"] for row in own if row["primary"] == "True"}
-    return verdicts
+    if verdict == "depends":
+        return f"{first}, {'and' if shown == 'undecided' else 'but'} {many}"
+    return f"{first}, {many.removesuffix(' runs')}"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job
-from bezierplan.figures.caption import Caption, read_verdicts
+from bezierplan.figures.caption import Caption
 from bezierplan.figures.layout import Layout
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Panel
@@ -44,7 +44,7 @@ class Latex(Job):
         if beside:
             table = latex.laid_over(table, *beside, self.heads)
             notes = [comparison.SIGNS_MEAN, *notes]
-        caption = self.caption.write(read_verdicts(input_files.claims))
+        caption = self.caption.write(input_files.claims)
         text = latex.document(table, caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 
@@ -57,7 +57,7 @@ class CaptionFile(Job):
 
     def run(self, input_files, output_files):
         """Write the caption."""
-        text = self.caption.write(read_verdicts(input_files.claims))
+        text = self.caption.write(input_files.claims)
         Path(output_files[0]).write_text(f"{text}\n", encoding="utf-8")
 
 

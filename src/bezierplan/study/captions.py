@@ -8,17 +8,18 @@ import hashlib
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures.caption import MOST_FINDINGS, Caption, Finding, tell, tell_both
 from bezierplan.figures.jobs import CaptionFile, Latex
-from bezierplan.figures.page import SETTINGS, changes
 from bezierplan.machine.digest import compute_content_digest
-from bezierplan.places import STUDIES
+from bezierplan.places import STUDIES, TREE
 from bezierplan.study import jobs
 from bezierplan.study.definition import Study
 
-Kept = tuple[list[str], dict[str, list[dict[str, str]]]]
+Rows = list[dict[str, str]]
 
+OUTCOME = TREE / "docs" / "outcome"
 _LONG = 80
 """Characters of a value that stand where settings are compared."""
-_KEPT: dict[int, tuple[Study, Kept]] = {}
+_KEPT: dict[int, tuple[Study, list[str], Rows, Rows]] = {}
+"""By id of a study: the study, which keeps its id, its changes, claims and numbers."""
 
 
 def build_latex(study: Study, scale: str, table: str) -> Latex:
@@ -35,29 +36,30 @@ def build_caption_file(study: Study, scale: str, figure: str) -> CaptionFile:
 
 def build_caption(study: Study, artefact: str, scale: str) -> Caption:
     """The caption of a table or figure. The page has the methods' settings, and all claims."""
-    kept = {row["id"]: row for row in _read_kept(study)[1]["claims"]}
+    _, _, claims, numbers = _read_kept(study)
+    kept = {row["id"]: row for row in claims}
     about = [
         claim
         for claim in study.claims
         if artefact in claim.artefacts and (claim.id in kept or claim.scale in (None, scale))
     ]
     about.sort(key=lambda claim: (_is_untestable(claim), bool(claim.finding)))
-    layout = study.layout.get(artefact)
-    return Caption(
-        study.artefact(artefact).title,
-        layout.says if layout and not about else "",
-        [
-            Finding(
-                claim.id,
-                claim.statement.removesuffix("."),
-                _tell(study, claim, kept.get(claim.id), scale),
-                _count_runs(study, claim, scale),
-            )
-            for claim in about[:MOST_FINDINGS]
-        ],
-        _tell_means(study, artefact) if scale == "full" else "",
-        jobs.find_runs_behind(study, artefact, scale),
-    )
+    findings = [
+        Finding(
+            claim.id,
+            claim.statement.removesuffix("."),
+            _tell(study, claim, kept.get(claim.id), scale),
+            _count_runs(study, claim, scale),
+        )
+        for claim in about[:MOST_FINDINGS]
+    ]
+    remark = ""
+    if artefact in study.layout and not about:
+        remark = f"In the paper: {study.layout[artefact].says}"
+    elif scale == "full" and artefact in study.compared():
+        remark = _tell_means(study, artefact, numbers)
+    behind = jobs.find_runs_behind(study, artefact, scale)
+    return Caption(study.artefact(artefact).title, findings, remark, behind)
 
 
 def _is_untestable(claim: Claim) -> bool:
@@ -84,18 +86,18 @@ def _count_runs(study: Study, claim: Claim, scale: str) -> int:
     return max((jobs.count_runs(study, name, scale) for name in experiments), default=0)
 
 
-def _tell_means(study: Study, table: str) -> str:
+def _tell_means(study: Study, table: str, numbers: Rows) -> str:
     """How many runs the means of a table are of, if some leave out runs without a free path."""
-    rows = [row for row in _read_kept(study)[1]["numbers_papers_size"] if row["table"] == table]
-    least = min((int(row["n_ours"]) for row in rows if row["statistic"] == "mean"), default=0)
-    every = jobs.count_runs(study, study.whole(table).experiment, "full") if least else 0
+    every = jobs.count_runs(study, study.compared()[table].experiment, "full")
+    means = (row for row in numbers if row["table"] == table and row["statistic"] == "mean")
+    least = min((int(row["n_ours"]) for row in means), default=every)
     left_out = f"Means leave out runs without a free path: at least {least} of {every} remain"
     return left_out if least < every else ""
 
 
 def list_changes(study: Study) -> list[str]:
-    """Return which settings are not those of docs/outcome, in words; none of a study elsewhere."""
-    return _read_kept(study)[0]
+    """Return which settings of a study of this project are not those of docs/outcome, in words."""
+    return _read_kept(study)[1]
 
 
 def is_of_project(study: Study) -> bool:
@@ -103,21 +105,37 @@ def is_of_project(study: Study) -> bool:
     return study.folder.resolve().is_relative_to(STUDIES)
 
 
-def _read_kept(study: Study) -> Kept:
-    """What docs/outcome keeps of a study: which settings differ from its own, and if none does the
-    rows of its tables, by name. It is read once.
-    """
+def _read_kept(study: Study) -> tuple[Study, list[str], Rows, Rows]:
+    """What docs/outcome keeps of a study, read once; rows only if no setting has changed."""
     if id(study) not in _KEPT:
-        changed = changes(study.key, list_settings(study)) if is_of_project(study) else []
-        tables = {}
-        for name in ("claims", "numbers_papers_size"):
-            file, tables[name] = SETTINGS.with_name(f"{name}.csv"), []
-            if is_of_project(study) and not changed and file.is_file():
-                with file.open(encoding="utf-8", newline="") as rows:
-                    own = (row for row in csv.DictReader(rows) if row["study"] == study.key)
-                    tables[name] = [row for row in own if row["primary"] == "True"]
-        _KEPT[id(study)] = study, (changed, tables)
-    return _KEPT[id(study)][1]
+        changes = _compare_settings(study)
+        parts = (
+            [] if changes else _read(study, name) for name in ("claims", "numbers_papers_size")
+        )
+        claims, numbers = ([row for row in rows if row["primary"] == "True"] for rows in parts)
+        _KEPT[id(study)] = study, changes, claims, numbers
+    return _KEPT[id(study)]
+
+
+def _read(study: Study, name: str) -> Rows:
+    """The rows of a study of this project in a table of docs/outcome, if there is one."""
+    file = OUTCOME / f"{name}.csv"
+    if not (is_of_project(study) and file.is_file()):
+        return []
+    with file.open(encoding="utf-8", newline="") as rows:
+        return [row for row in csv.DictReader(rows) if row["study"] == study.key]
+
+
+def _compare_settings(study: Study) -> list[str]:
+    """Which settings are not those of docs/outcome; none if it keeps none."""
+    before = {(row["of"], row["setting"]): row["value"] for row in _read(study, "settings")}
+    now = {(of, name): value for of, name, value in list_settings(study)} if before else {}
+    return [
+        f"{name} of {of} is {now.get((of, name), 'absent')}, in the README's outcome "
+        f"{before.get((of, name), 'absent')}"
+        for of, name in now | before
+        if now.get((of, name)) != before.get((of, name))
+    ]
 
 
 def list_settings(study: Study) -> list[tuple[str, str, str]]:

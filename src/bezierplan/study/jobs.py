@@ -20,7 +20,6 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     VerdictText,
 )
-from bezierplan.analysis.naming import column_name
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
@@ -287,21 +286,19 @@ def _list_alternatives(study: Study) -> list[dict[str, str]]:
 
 
 def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
-    """Return the runs of each method behind a table or figure, by experiment where they differ."""
-    parts, told = _list_parts(study.artefact(artefact)), {}
+    """Return the runs of each method behind a table or figure."""
+    parts, told = _list_parts(study.artefact(artefact)), []
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]
         listed = max(len(convert_to_list(where.get("repeat", []))) for where in own)
         repeats, layouts = listed or content.repeats[scale], count_layouts(study, experiment, scale)
-        told[column_name(experiment, study.labels)] = (
-            f"{'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
+        told.append(
+            f"{'at most ' if scale == 'extended' and content.fewer else ''}{repeats:,} "
             f"run{'s' if repeats > 1 else ''} of each method on each "
-            + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
+            + (f"of {layouts} layouts, {repeats * layouts:,} in all" if layouts > 1 else "problem")
         )
-    if len({*told.values()}) < 2:
-        return next(iter(told.values()), "")
-    return "; ".join(f"{experiment}: {text}" for experiment, text in told.items())
+    return "; ".join(dict.fromkeys(told))
 
 
 def count_layouts(study: Study, experiment: str, scale: str) -> int:

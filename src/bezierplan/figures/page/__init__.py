@@ -2,16 +2,11 @@
 (`answer`, `why`, `charts`), and templates that show it (`build`).
 """
 
-import csv
 import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.places import TREE
-
 HERE = Path(__file__).parent
-SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
-"""The settings of all studies behind it."""
 
 
 def files() -> list[str]:
@@ -19,23 +14,6 @@ def files() -> list[str]:
     return sorted(
         str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir()
     )
-
-
-def changes(study: str, settings: Iterable[tuple[str, str, str]]) -> list[str]:
-    """Which settings of a study, by what has them and setting, are not those of the README's
-    outcome.
-    """
-    if not SETTINGS.is_file():
-        return []
-    with SETTINGS.open(encoding="utf-8", newline="") as rows:
-        before = {(of, name): value for key, of, name, value in csv.reader(rows) if key == study}
-    now = {(of, name): value for of, name, value in settings}
-    return [
-        f"{name} of {of} is {now.get((of, name), 'absent')}, in the README's outcome "
-        f"{before.get((of, name), 'absent')}"
-        for of, name in now | before
-        if now.get((of, name)) != before.get((of, name))
-    ]
 
 
 def in_printed_order(names: Iterable[str]) -> list[str]:

@@ -139,11 +139,11 @@ def _artefact(study: str, name: str, artefact: Any, claims: list[Row]) -> Row:
 
 
 def _figure(study: str, name: str, artefact: Any, folder: Path, claims: list[Row]) -> Row:
-    """A figure, with the runs that it shows and what is lowest and highest in it, in words."""
+    """A figure, with the runs that it shows and what can be counted in it, in words."""
     row = _artefact(study, name, artefact, claims)
     text = (folder / f"{row['stem']}.notes.txt").read_text(encoding="utf-8").strip()
-    runs, _, extremes = text.partition("\n")
-    return row | {"runs": runs, "extremes": extremes}
+    runs, _, counts = text.partition("\n")
+    return row | {"runs": runs, "counts": counts}
 
 
 def _table(

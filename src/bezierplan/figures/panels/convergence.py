@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import naming, statistics
-from bezierplan.figures import glance, style
+from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
     grouped,
@@ -21,7 +21,6 @@ from bezierplan.figures.groups import (
     published,
     runs_note,
     show_metric,
-    unit_of,
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
@@ -217,8 +216,4 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
     show_metric(axes, "objective", scene, options.statistic)
-    ends = frame[frame["generation"] == frame["generation"].max()]
-    name = f"final {options.statistic}"
-    unit = unit_of("objective", scene)
-    best = glance.extremes(name, ends, options.hue, "objective", scene.labels, unit)
-    return Note("", runs_note(frame, options.statistic, "line"), best)
+    return Note("", runs_note(frame, options.statistic, "line"))
