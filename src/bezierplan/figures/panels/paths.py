@@ -328,7 +328,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
 
 
 def _note(frame: pd.DataFrame, unit: str) -> Note:
-    """The length of the path; for the caption its run, and what else there is to say of it."""
+    """The length of the path; for the notes its run, and what else there is to say of it."""
     row, parts = frame.iloc[0], set(frame["part"])
     if "path" not in parts:
         return Note("no path", run_note(frame, "no path"))
