@@ -9,7 +9,7 @@ import pandas as pd
 from pivots import pivot_of
 
 from bezierplan.analysis.numbers import wholes
-from bezierplan.figures.caption import Caption, Finding
+from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
     ArtefactView,
@@ -111,7 +111,7 @@ OPEN_DETAIL |= {"reason": "it fits", "source": "inferred", "setting": "genes"}
 
 def caption(title: str, says: str, *claims: str) -> Caption:
     """A caption with claims whose verdicts only the scale knows."""
-    findings = [Finding(name, f"{HOSTILE} ({name})", "", 10) for name in claims]
+    findings = [CaptionClaim(name, f"{HOSTILE} ({name})", "", 10) for name in claims]
     return Caption(title, findings, says, "Ten runs")
 
 

@@ -10,16 +10,16 @@ from bezierplan.analysis.words import WORDS
 MOST_FINDINGS = 2
 
 
-class Finding(NamedTuple):
-    """What a claim says of a table or figure.
+class CaptionClaim(NamedTuple):
+    """A claim about a table or figure.
 
-    told: its verdict in words, empty if only the claims of the scale know it. runs: those of the
+    words: its verdict, empty if only the claims of the scale know it. runs: those of the
     scale that it is judged on, 0 if none is.
     """
 
     claim: str
     statement: str
-    told: str
+    words: str
     runs: int
 
 
@@ -29,26 +29,26 @@ class Caption(NamedTuple):
     """
 
     title: str
-    findings: list[Finding]
+    findings: list[CaptionClaim]
     remark: str
     behind: str
 
     @property
     def is_open(self) -> bool:
         """Whether only the claims of the scale know a verdict."""
-        return not all(finding.told for finding in self.findings)
+        return not all(finding.words for finding in self.findings)
 
-    def judge(self, verdicts: Mapping[str, str]) -> list[Finding]:
+    def judge(self, verdicts: Mapping[str, str]) -> list[CaptionClaim]:
         """Return the findings whose verdict is known. verdicts: of the scale's claims, by id."""
         return [
-            each._replace(told=each.told or tell(verdicts[each.claim], each.runs, "these "))
+            each._replace(words=each.words or tell(verdicts[each.claim], each.runs, "these "))
             for each in self.findings
-            if each.told or each.claim in verdicts
+            if each.words or each.claim in verdicts
         ]
 
     def write(self, files: Iterable[str | Path] = ()) -> str:
         """Return the caption as one line. files: the claims of the scale, if it is open."""
-        found = [f"{each.statement}: {each.told}" for each in self.judge(read_verdicts(files))]
+        found = [f"{each.statement}: {each.words}" for each in self.judge(read_verdicts(files))]
         shown = f"Shown: {self.behind}" if self.behind else ""
         return " ".join(f"{part}." for part in (self.title, *found, self.remark, shown) if part)
 
@@ -71,16 +71,16 @@ def tell(verdict: str, runs: int, which: str = "") -> str:
     return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
 
 
-def tell_both(verdict: str, runs: int, shown: str, runs_shown: int) -> str:
-    """Return the verdict of many runs, after that of the runs shown where it differs.
+def tell_both(verdict: str, runs: int, own: str, own_runs: int) -> str:
+    """Return the verdict of many runs, after that of those shown if it differs.
 
     >>> tell_both("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'
     """
     many = tell(verdict, runs)
-    if shown in ("", verdict, "depends", "untestable") or verdict == "untestable":
+    if own in ("", verdict, "depends", "untestable") or verdict == "untestable":
         return many
-    first = tell(shown, runs_shown, "these ")
+    first = tell(own, own_runs, "these ")
     if verdict == "depends":
-        return f"{first}, {'and' if shown == 'undecided' else 'but'} {many}"
+        return f"{first}, {'and' if own == 'undecided' else 'but'} {many}"
     return f"{first}, {many.removesuffix(' runs')}"

@@ -6,7 +6,7 @@ import csv
 import hashlib
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.figures.caption import MOST_FINDINGS, Caption, Finding, tell, tell_both
+from bezierplan.figures.caption import MOST_FINDINGS, Caption, CaptionClaim, tell, tell_both
 from bezierplan.figures.jobs import CaptionFile, Latex
 from bezierplan.machine.digest import compute_content_digest
 from bezierplan.places import STUDIES, TREE
@@ -37,18 +37,18 @@ def build_caption_file(study: Study, scale: str, figure: str) -> CaptionFile:
 def build_caption(study: Study, artefact: str, scale: str) -> Caption:
     """The caption of a table or figure. The page has the methods' settings, and all claims."""
     _, _, claims, numbers = _read_kept(study)
-    kept = {row["id"]: row for row in claims}
+    rows = {row["id"]: row for row in claims}
     about = [
         claim
         for claim in study.claims
-        if artefact in claim.artefacts and (claim.id in kept or claim.scale in (None, scale))
+        if artefact in claim.artefacts and (claim.id in rows or claim.scale in (None, scale))
     ]
     about.sort(key=lambda claim: (_is_untestable(claim), bool(claim.finding)))
     findings = [
-        Finding(
+        CaptionClaim(
             claim.id,
             claim.statement.removesuffix("."),
-            _tell(study, claim, kept.get(claim.id), scale),
+            _tell(study, claim, rows.get(claim.id), scale),
             _count_runs(study, claim, scale),
         )
         for claim in about[:MOST_FINDINGS]
@@ -66,18 +66,18 @@ def _is_untestable(claim: Claim) -> bool:
     return any(check.test == "untestable" for check in claim.checks)
 
 
-def _tell(study: Study, claim: Claim, kept: dict[str, str] | None, scale: str) -> str:
+def _tell(study: Study, claim: Claim, outcome: dict[str, str] | None, scale: str) -> str:
     """The verdict in words, as far as it is known before the runs."""
     if _is_untestable(claim):
         return tell("untestable", 0)
-    if not kept:
+    if not outcome:
         return ""
-    verdict, shown = kept["verdict"], kept["verdict_papers_size"]
+    verdict, own = outcome["verdict"], outcome["verdict_papers_size"]
     many, few = (_count_runs(study, claim, each) for each in ("extended", "full"))
     # Some functions look at no run; what they say does not depend on their number.
-    if verdict == shown and all(check.test == "function" for check in claim.checks):
+    if verdict == own and all(check.test == "function" for check in claim.checks):
         many = 0
-    return tell_both(verdict, many, shown if scale == "full" else "", few)
+    return tell_both(verdict, many, own if scale == "full" else "", few)
 
 
 def _count_runs(study: Study, claim: Claim, scale: str) -> int:
