@@ -71,16 +71,16 @@ def tell(verdict: str, runs: int, which: str = "") -> str:
     return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
 
 
-def tell_both(verdict: str, runs: int, own: str, own_runs: int) -> str:
+def tell_both(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
     """Return the verdict of many runs, after that of those shown if it differs.
 
     >>> tell_both("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'
     """
     many = tell(verdict, runs)
-    if own in ("", verdict, "depends", "untestable") or verdict == "untestable":
+    if verdict_here in ("", verdict, "depends", "untestable") or verdict == "untestable":
         return many
-    first = tell(own, own_runs, "these ")
+    first = tell(verdict_here, runs_here, "these ")
     if verdict == "depends":
-        return f"{first}, {'and' if own == 'undecided' else 'but'} {many}"
+        return f"{first}, {'and' if verdict_here == 'undecided' else 'but'} {many}"
     return f"{first}, {many.removesuffix(' runs')}"
