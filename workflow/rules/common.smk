@@ -153,6 +153,16 @@ def files_of(scale, study, name):
     return [f"results/{scale}/{study.key}/{file}" for file in study.files_of(name)]
 
 
+def files_alone(study, name):
+    """The same at scale full, without a caption that waits for all claims of the study."""
+    waits = captions.build_caption(study, name, "full").is_open
+    return [
+        file
+        for file in files_of("full", study, name)
+        if not (waits and file.endswith((".tex", ".txt")))
+    ]
+
+
 PRINTED = {key: in_trees(study.with_published()) for key, study in STUDIES.items()}
 UNPRINTED = {
     key: in_trees(study.compared().keys() - study.with_published().keys())
