@@ -9,6 +9,7 @@ import pandas as pd
 from pivots import pivot_of
 
 from bezierplan.analysis.numbers import wholes
+from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
     ArtefactView,
@@ -108,6 +109,12 @@ OPEN_DETAIL = {"id": "O1", "detail": HOSTILE, "default": 5, "alternatives": [8]}
 OPEN_DETAIL |= {"reason": "it fits", "source": "inferred", "setting": "genes"}
 
 
+def caption(title: str, says: str, *claims: str) -> Caption:
+    """A caption with claims whose verdicts only the scale knows."""
+    findings = [CaptionClaim(name, f"{HOSTILE} ({name})", "") for name in claims]
+    return Caption(title, findings, says, "Ten runs")
+
+
 def job() -> PageJob:
     """A study `one` with three claims, four numbers, three tables, a figure, an assumption."""
     values = [{"metric": metric, "statistic": "mean"} for metric in ("length", "objective")]
@@ -128,11 +135,11 @@ def job() -> PageJob:
         },
         repeats=[2, 3],
         tables={
-            "table1": ArtefactView(HOSTILE, "Ten runs", HOSTILE, table),
-            "more": ArtefactView("more", "Ten runs", "", table.but(extends="table1")),
-            "listed": ArtefactView("a list", "", "", SimpleNamespace()),
+            "table1": ArtefactView(caption(HOSTILE, HOSTILE, "C1", "C2"), table),
+            "more": ArtefactView(caption("more", ""), table.but(extends="table1")),
+            "listed": ArtefactView(caption("a list", ""), SimpleNamespace()),
         },
-        figures={"figure1": ArtefactView("Lengths", HOSTILE, HOSTILE)},
+        figures={"figure1": ArtefactView(caption("Lengths", HOSTILE))},
         assumptions=[OPEN_DETAIL],
         files=["claims", "checks", "audit"],
         experiments={},
@@ -177,7 +184,9 @@ def page(folder: Path) -> SimpleNamespace:
     for name, table in files.items():
         table.to_csv(folder / f"{name}.csv", index=False)
     (folder / "one/paper/figure1.svg").write_text(SVG)
-    (folder / "one/paper/figure1.txt").write_text("(a) run one/first/p/b/0.\n(a) lowest mean: b.\n")
+    (folder / "one/paper/figure1.txt").write_text(
+        "Lengths.\n(a) run one/first/p/b/0.\n(a) lowest mean: b.\n"
+    )
     summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "methods")]
     made = build.page(job(), folder, summary)
     made.data |= viewed()

@@ -12,7 +12,7 @@ from bezierplan.analysis import results
 from bezierplan.analysis.run_tables import table_digest
 from bezierplan.running import columns, problems, rows
 from bezierplan.running.inputs import Files
-from bezierplan.study import definition, jobs
+from bezierplan.study import captions, definition, jobs
 from bezierplan.study.experiments import Experiment, Method
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -65,8 +65,9 @@ def test_conditions_with_fewer_runs_leave_the_later_chunks(fewer, numbers):
 def test_a_caption_says_where_there_are_fewer_runs():
     own = studies()["song2016"]
     runs = "runs of each method on each problem."
-    assert jobs.build_caption(own, "table1", "extended").endswith(f"routes: at most 250 {runs}")
-    assert jobs.build_caption(own, "table1", "full").endswith(f"routes: 100 {runs}")
+    most, exact = (captions.build_caption(own, "table1", scale) for scale in ("extended", "full"))
+    assert most.write().endswith(f"Shown: at most 250 {runs}")
+    assert exact.write().endswith(f"Shown: 100 {runs}")
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ from matplotlib.text import Text
 from panels import options_of, panels_of
 
 from bezierplan.analysis.results import Results
-from bezierplan.figures import glance, sheet, style
 from bezierplan.figures import panels as kinds_of_panel
+from bezierplan.figures import sheet, style
 from bezierplan.figures.panels import (
     Sources,
     along_path,
@@ -861,50 +861,6 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
     assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
     assert "runs are feasible" in (here / "figure.svg").read_text(), "and it has its caption"
-
-
-# What is plain to the eye, in words
-
-
-@pytest.mark.parametrize(
-    ("values", "expected"),
-    [
-        ({"a": 2.0, "b": 1.0, "c": 3.25}, "lowest median: b (1), highest: c (3.25)"),
-        ({"a": 2.0, "b": np.inf, "c": 3.0}, "lowest median: a (2), highest: c (3)"),
-        ({"a": 1.0, "b": 1.0, "c": 3.0}, "lowest median: a and b (1), highest: c (3)"),
-        ({"a": 1.0, "b": 1.0}, "median 1 of all"),
-        ({"a": 12345.6, "b": 0.00123456}, "lowest median: b (0.001235), highest: a (12,346)"),
-        ({"a": 2.0, "b": np.nan}, ""),
-    ],
-)
-def test_the_ends_of_several_values(values, expected):
-    frame = pd.DataFrame({"method": values.keys(), "value": values.values()})
-    assert glance.extremes("median", frame, "method", "value", {}) == expected
-
-
-def test_who_is_lowest_and_highest_in_most_places():
-    table = {"a": [1.0, 2, 3, np.nan], "b": [2.0, 1, 2, 7], "c": [3.0, 4, 2.5, np.nan]}
-    frame = pd.DataFrame(table).rename_axis("x").reset_index()
-    frame = frame.melt("x", var_name="method")
-
-    def mostly(places):
-        return glance.mostly("mean", frame[frame["x"].isin(places)], "x", "method", {})
-
-    assert mostly([0, 1, 2, 3]) == "lowest mean in 2 of 3: b, highest mean in 2 of 3: c"
-    assert mostly([0]) == "lowest mean: a (1), highest: c (3)"
-    assert mostly([3]) == ""
-
-
-def test_a_figure_says_in_the_last_line_of_its_caption_what_is_plain_to_the_eye():
-    caption, last = sheet_of("methods").get_label().split("\n")
-    assert "run" in caption
-    assert "lowest" not in caption
-    assert last.startswith(
-        "(a) lowest final mean: coarse (26.83), highest: random (46.83). (b), (d) "
-    )
-    assert "lowest mean length in 3 of 3: coarse, highest mean length in 3 of 3: random" in last
-    assert "(e) lowest median: coarse (27), highest: random (47)" in last
-    assert "\n" not in drawn(results(), CURVATURE).get_label(), "nothing is compared"
 
 
 def test_a_bar_that_is_missing_says_so_and_a_logarithmic_axis_has_points():

@@ -13,11 +13,10 @@ from snakemake.iocontainers import OutputFiles
 from studies import studies, study
 
 from bezierplan.analysis import markdown
-from bezierplan.figures.page import changes
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import jobs, page, reading
+from bezierplan.study import captions, jobs, page, reading
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -64,15 +63,13 @@ def test_caption_is_one_line_that_says_just_what_it_says():
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
 
 
-def _changes(own):
-    return changes(own.key, page.list_settings(own))
-
-
 def test_a_study_with_another_setting_is_marked_as_changed():
     """The others are not: the settings of the outcome are those of today."""
-    assert [own.key for own in studies().values() if _changes(own)] == []
+    assert [own.key for own in studies().values() if captions.list_changes(own)] == []
     turned = SONG.but(settings=SONG.settings | {"population": 198})
-    assert "population of smooth is 198, in the README's outcome 200" in _changes(turned)
+    assert "population of smooth is 198, in the README's outcome 200" in captions.list_changes(
+        turned
+    )
 
 
 # Files that jobs write
@@ -112,7 +109,8 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
     assert repeats["smoke"] != repeats["full"]
     for scale in ("smoke", "full"):
         assert jobs.build_table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
-        assert f"{repeats[scale]} runs of each method" in jobs.build_caption(SONG, "table1", scale)
+        told = captions.build_caption(SONG, "table1", scale).write()
+        assert f"{repeats[scale]} runs of each method" in told
 
 
 def test_the_papers_own_are_the_numbered_ones():

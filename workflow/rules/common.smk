@@ -25,7 +25,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
-from bezierplan.study import experiments, jobs, page, reading, stored
+from bezierplan.study import captions, experiments, jobs, page, reading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -266,7 +266,9 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escaped(jobs.build_caption(STUDIES[wildcards.study], name, wildcards.scale))
+    return markdown.escaped(
+        captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale).write()
+    )
 
 
 

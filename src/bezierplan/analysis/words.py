@@ -11,12 +11,14 @@ class Word(NamedTuple):
     """A position or a verdict.
 
     on: what it is on, `number` or `claim`. group: what it counts as in the outcome. counted: how a
-    count says it. look: the class that colours it. symbol, sign: its mark on a page, and in print.
+    count says it. caption: how a caption does, with braces for the runs. look: the class that
+    colours it. symbol, sign: its mark on a page, and in print.
     """
 
     on: str
     group: str
     counted: str
+    caption: str
     look: str
     symbol: str
     sign: str
@@ -27,7 +29,7 @@ with Path(__file__).with_suffix(".csv").open(encoding="utf-8", newline="") as ro
     WORDS = {row.pop("word"): Word(**row) for row in csv.DictReader(rows)}
 """In the order in which they are counted and explained."""
 
-OTHER = Word("", "open", "", "open", "·", "", "")
+OTHER = Word("", "open", "", "", "open", "·", "", "")
 """How any other text is shown."""
 
 

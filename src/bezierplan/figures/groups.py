@@ -149,7 +149,8 @@ def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
     counted = _range(frame["runs"])
     if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
         counted = f"{_range(frame['n'])} of {counted}"
-    return f"{statistic} of {counted} runs per {where}, {_range(share)} % feasible"
+    runs = f"{statistic} of {counted} runs" if counted != "1" else "1 run"
+    return f"{runs} per {where}, {_range(share)} % feasible"
 
 
 def _range(numbers: pd.Series) -> str:

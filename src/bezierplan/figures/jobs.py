@@ -49,9 +49,10 @@ class Latex(Job):
 
 @dataclass(frozen=True)
 class FigureFiles(Job):
-    """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
+    """A figure: pictures, exactly the data drawn in them, its caption and notes on the runs."""
 
     study: str
+    caption: str
     columns: int
     width: str
     """Of the sheet, a key of `style.WIDTHS`."""
@@ -125,7 +126,8 @@ class FigureFiles(Job):
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
         )
         sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
-        Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+        text = f"{self.caption}\n{figure.get_label()}\n"
+        Path(output_files.caption).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)

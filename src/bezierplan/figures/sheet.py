@@ -77,7 +77,7 @@ def read_data(file: str) -> pd.DataFrame:
 def draw(
     panels: list[Panel], frame: pd.DataFrame, scene: FigureScene, columns: int, width: str = "two"
 ) -> Figure:
-    """The figure of a table made by `data`. Its label is its caption: for each panel the run that
+    """The figure of a table made by `data`. Its label has notes: for each panel the run that
     it shows, and what it counts; in a second line, if anything can be said of it, what is plain to
     the eye.
 

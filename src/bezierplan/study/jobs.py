@@ -4,7 +4,6 @@ the rule's job from a study, or from all studies, and the rule's wildcards.
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from bezierplan.analysis.claims.material import Display, StudyForClaims
 from bezierplan.analysis.jobs import (
@@ -29,8 +28,10 @@ from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import convert_to_list, list_keys
 from bezierplan.study import alternatives
+from bezierplan.study.captions import build_caption
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import build_descriptions, build_problems_job
+from bezierplan.study.runs_behind import list_methods, list_parts
 
 Studies = dict[str, Study]
 
@@ -142,35 +143,6 @@ def build_judgement(study: Study, scale: str, experiment: str, method: str) -> R
 # Tables and figures
 
 
-def _list_parts(artefact: TableEntry | Figure) -> list[Any]:
-    """Return the parts of a table or figure that show runs: the table itself, or some panels."""
-    parts = getattr(artefact, "panels", [artefact])
-    return [part for part in parts if getattr(part, "experiment", None)]
-
-
-def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
-    """Return experiment -> the methods whose runs a table or figure needs.
-
-    A table in the paper's form and a figure need the methods that they select, baselines included
-    if named; another table needs all, because its comparison shows them.
-    """
-    if spec := study.find_tables_of_runs().get(artefact):
-        methods = study.methods_of(spec.experiment)
-        if spec.printed:
-            methods = convert_to_list(
-                spec.where.get("method", study.own_methods(spec.experiment, artefact))
-            )
-        return {spec.experiment: methods}
-    needed: dict[str, set[str]] = {}
-    for panel in _list_parts(study.artefact(artefact)):
-        methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))
-        needed.setdefault(panel.experiment, set()).update(convert_to_list(methods))
-    return {
-        name: [method for method in study.methods_of(name) if method in shown]
-        for name, shown in needed.items()
-    }
-
-
 def find_results(study: Study, artefact: str, scale: str) -> Shows:
     """Return the results that a table or figure shows: experiment -> method -> number of chunks."""
     return {
@@ -194,7 +166,7 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
-    for part in _list_parts(spec):
+    for part in list_parts(spec):
         content = study.experiments[part.experiment]
         shown |= {*convert_to_list(part.where.get("method", content.methods)), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
@@ -248,7 +220,8 @@ def build_latex(study: Study, scale: str, table: str) -> Latex:
     """Build the job that typesets a table."""
     spec, printed = study.tables[table], study.find_published_tables().get(table)
     heads = len(printed.index) if printed else 0
-    return Latex(f"{study.key}-{table}", build_caption(study, table, scale), spec.note, heads)
+    caption = build_caption(study, table, scale).write()
+    return Latex(f"{study.key}-{table}", caption, spec.note, heads)
 
 
 def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
@@ -261,6 +234,7 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     homes += problems.workspaces
     return FigureFiles(
         study=study.key,
+        caption=build_caption(study, figure, scale).write(),
         columns=spec.columns,
         width=spec.width,
         panels=spec.panels,
@@ -302,39 +276,6 @@ def _list_alternatives(study: Study) -> list[dict[str, str]]:
             for name, value in own.values.items()
         ]
     return rows
-
-
-def build_caption(study: Study, artefact: str, scale: str) -> str:
-    """Return the caption of a table or figure: its title, the paper's own words, and the runs
-    behind it. The page has the settings of each method, and the verdicts of claims.
-    """
-    title = study.artefact(artefact).title
-    words = quote_paper(study, artefact)
-    parts = [title, words and f"In print: {words}", find_runs_behind(study, artefact, scale)]
-    return ". ".join(filter(None, parts)) + "."
-
-
-def quote_paper(study: Study, artefact: str) -> str:
-    """Return the words of the paper's caption of a table or figure, or an empty text."""
-    return study.layout[artefact].says if artefact in study.layout else ""
-
-
-def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
-    """Describe how many runs of each method are behind a table or figure."""
-    parts, told = _list_parts(study.artefact(artefact)), []
-    for experiment in list_methods(study, artefact):
-        content = study.experiments[experiment]
-        own = [part.where for part in parts if part.experiment == experiment]
-        listed = max(len(convert_to_list(where.get("repeat", []))) for where in own)
-        repeats = listed or content.repeats[scale]
-        drawn = [study.problems[name].layouts or {scale: 1} for name in content.problems]
-        layouts = max(each[scale] for each in drawn)
-        told.append(
-            f"{experiment}: {'at most ' if scale == 'extended' and content.fewer else ''}{repeats} "
-            f"run{'s' if repeats > 1 else ''} of each method on each "
-            + (f"of {layouts} layouts, {repeats * layouts} together" if layouts > 1 else "problem")
-        )
-    return "; ".join(told)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -394,7 +335,7 @@ def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
     """Return how each part of a table or figure selects and shows its runs."""
     return [
         Display(**{name: each for name, each in part.plain().items() if name in list_keys(Display)})
-        for part in _list_parts(artefact)
+        for part in list_parts(artefact)
     ]
 
 

@@ -1,16 +1,9 @@
 """The job that makes the page of a scale."""
 
-import hashlib
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import (
-    EVIDENCE,
-    changes,
-    files,
-    in_printed_order,
-    read_answers,
-)
+from bezierplan.figures.page import EVIDENCE, files, in_printed_order, read_answers
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -18,17 +11,15 @@ from bezierplan.figures.page.page_job import (
     PageJob,
     StudyView,
 )
-from bezierplan.machine.digest import compute_content_digest, name_module, read_docstring
-from bezierplan.places import STUDIES
+from bezierplan.machine.digest import name_module, read_docstring
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
-from bezierplan.study import jobs
+from bezierplan.study import captions, jobs
 from bezierplan.study.alternatives import find_default
+from bezierplan.study.captions import list_settings as list_settings
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
 
 RESULTS = "results/"
-_LONG = 80
-"""Most characters of a value in the table of settings."""
 
 
 def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
@@ -73,7 +64,7 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     known = [
         key
         for key, own in studies.items()
-        if scale != "extended" and _is_of_project(own) and not shown[key].changes
+        if scale != "extended" and captions.is_of_project(own) and not shown[key].changes
     ]
     return Page(
         PageJob(scale, shown, known),
@@ -83,18 +74,11 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     )
 
 
-def _is_of_project(study: Study) -> bool:
-    """Return whether a study is one of this project."""
-    return study.folder.resolve().is_relative_to(STUDIES)
-
-
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
     """Return what the page needs to know of a study beside its results."""
     artefacts = {
         name: ArtefactView(
-            study.artefact(name).title,
-            jobs.find_runs_behind(study, name, scale),
-            jobs.quote_paper(study, name),
+            captions.build_caption(study, name, scale),
             study.complete_table(name) if name in study.tables else None,
         )
         for name in list_artefacts(study, scale, root)
@@ -122,42 +106,13 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             *(("claims", "checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
-        changes=changes(study.key, list_settings(study)) if _is_of_project(study) else [],
+        changes=captions.list_changes(study),
         experiments={
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
         },
-        answer=read_answers().get(study.key) if _is_of_project(study) else None,
+        answer=read_answers().get(study.key) if captions.is_of_project(study) else None,
     )
-
-
-def list_settings(study: Study) -> list[tuple[str, str, str]]:
-    """Return all settings of a study as rows of owner, setting and value. The owner is a method, or
-    a kind and a name such as `workspace room`.
-    """
-    settings = {method: study.resolve_settings(method) for method in study.methods}
-    for name, workspace in study.workspaces.items():
-        # A map is a setting too: the digest shows that its file has changed.
-        maps = study.maps([name])
-        content = {"content of the map": compute_content_digest(*maps)} if maps else {}
-        settings[f"workspace {name}"] = workspace.plain() | content
-    for name, problem in study.problems.items():
-        settings[f"problem {name}"] = problem.plain()
-    for name, experiment in study.experiments.items():
-        settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
-    settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
-    settings["presets"] = study.presets
-    return [
-        (owner, setting, _shorten(str(value)))
-        for owner, own in settings.items()
-        for setting, value in own.items()
-    ]
-
-
-def _shorten(text: str) -> str:
-    """Return a text, cut if it is long, with a digest of the whole."""
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
 
 
 def has_audit(study: Study) -> bool:

@@ -10,12 +10,9 @@ from pathlib import Path
 from bezierplan.places import TREE
 
 HERE = Path(__file__).parent
-SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
-"""The settings of all studies behind it."""
-TEXTS = SETTINGS.with_name("texts.csv")
-"""The answer to each paper: study, title, text."""
+OUTCOME = TREE / "docs" / "outcome"
 EVIDENCE = [
-    str(SETTINGS.with_name(f"{name}.csv"))
+    str(OUTCOME / f"{name}.csv")
     for name in ("numbers", "claims", "methods", "claim_checks", "wholes")
 ]
 """What many runs say of all studies: tables of `reader.Evidence`."""
@@ -28,28 +25,12 @@ def files() -> list[str]:
     )
 
 
-def changes(study: str, settings: Iterable[tuple[str, str, str]]) -> list[str]:
-    """Which settings of a study, by what has them and setting, are not those of the README's
-    outcome.
-    """
-    if not SETTINGS.is_file():
-        return []
-    with SETTINGS.open(encoding="utf-8", newline="") as rows:
-        before = {(of, name): value for key, of, name, value in csv.reader(rows) if key == study}
-    now = {(of, name): value for of, name, value in settings}
-    return [
-        f"{name} of {of} is {now.get((of, name), 'absent')}, in the README's outcome "
-        f"{before.get((of, name), 'absent')}"
-        for of, name in now | before
-        if now.get((of, name)) != before.get((of, name))
-    ]
-
-
 def read_answers() -> dict[str, tuple[str, str]]:
-    """Read title and text of the README's outcome, by study."""
-    if not TEXTS.is_file():
+    """Read title and text of the answer to each paper, by study."""
+    file = OUTCOME / "texts.csv"
+    if not file.is_file():
         return {}
-    with TEXTS.open(encoding="utf-8", newline="") as rows:
+    with file.open(encoding="utf-8", newline="") as rows:
         return {row["study"]: (row["title"], row["text"]) for row in csv.DictReader(rows)}
 
 

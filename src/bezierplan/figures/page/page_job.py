@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import TableEntry
+from bezierplan.figures.caption import Caption
 
 
 class MethodView(NamedTuple):
@@ -20,11 +21,7 @@ class MethodView(NamedTuple):
 class ArtefactView(NamedTuple):
     """A table or figure of the page."""
 
-    title: str
-    behind: str
-    """Experiments and their repeats."""
-    says: str = ""
-    """What the paper says of its own."""
+    caption: Caption
     spec: TableEntry | None = None
     """Of a table, with what the one that it extends says of published numbers."""
 

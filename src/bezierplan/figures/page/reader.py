@@ -117,10 +117,10 @@ def _method(study: str, name: str, method: Any) -> Row:
 
 
 def _artefact(study: str, name: str, artefact: Any) -> Row:
-    """A table or figure: its title, what the paper says of its own, the runs behind it, its
-    address, and the path of its files without endings.
+    """A table or figure: the parts of its caption, its address, and the path of its files without
+    endings.
     """
-    return artefact._asdict() | {
+    return artefact.caption._asdict() | {
         "name": name,
         "address": address(study, name),
         "stem": f"{study}/{choose_tree(name)}/{name}",
@@ -129,11 +129,11 @@ def _artefact(study: str, name: str, artefact: Any) -> Row:
 
 
 def _figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
-    """A figure, with the runs that it shows and what is lowest and highest in it, in words."""
+    """A figure, with the runs that it shows and what can be counted in it, in words."""
     row = _artefact(study, name, artefact)
-    text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8").strip()
-    runs, _, extremes = text.partition("\n")
-    return row | {"runs": runs, "extremes": extremes}
+    text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
+    _, runs, *counts = text.split("\n", 2)
+    return row | {"runs": runs, "counts": "".join(counts).strip()}
 
 
 def _table(

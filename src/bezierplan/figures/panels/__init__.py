@@ -61,9 +61,9 @@ MOST_PANELS = 26
 class Note(NamedTuple):
     """What a panel says in words.
 
-    heading: a few words below its title. caption: what belongs into the figure's caption, such as
+    heading: a few words below its title. caption: what belongs into the figure's notes, such as
     the run that it shows and the runs that it counts, in clauses joined by semicolons. glance: what
-    is plain to the eye, such as the best method, for those who do not see the picture.
+    is plain to the eye, for those who do not see the picture.
     """
 
     heading: str = ""

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis import naming
-from bezierplan.figures import glance, style
+from bezierplan.figures import style
 from bezierplan.figures.groups import axis_label, published, runs_note, show_metric, summary
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column
@@ -101,9 +100,4 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_box_aspect(_HEIGHT)
     show_metric(axes, options.metric, scene, options.statistic, options.scale)
-    metric = f"{options.statistic} {naming.column_name(options.metric, labels)}"
-    return Note(
-        "",
-        runs_note(frame, options.statistic, "bar"),
-        glance.mostly(metric, frame, x, hue, labels),
-    )
+    return Note("", runs_note(frame, options.statistic, "bar"))

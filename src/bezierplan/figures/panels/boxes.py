@@ -11,7 +11,7 @@ from pydantic import Field
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.naming import amount
-from bezierplan.figures import glance, style
+from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
     axis_label,
@@ -124,7 +124,5 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     names = [naming.printed(group, by, scene.labels) for group in order]
     style.name_places(axes, names, axis_label(by, scene))
     show_metric(axes, options.metric, scene, scale=options.scale)
-    medians = frame[frame["part"].isin(["median", "none"])]
-    best = glance.extremes("median", medians, by, "value", scene.labels)
     where = "method" if by == "method" else "place"
-    return Note("", runs_note(frame.dropna(subset=[by]), "box", where), best)
+    return Note("", runs_note(frame.dropna(subset=[by]), "box", where))

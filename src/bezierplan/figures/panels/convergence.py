@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import naming, statistics
-from bezierplan.figures import glance, style
+from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
     grouped,
@@ -216,7 +216,4 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
     show_metric(axes, "objective", scene, options.statistic)
-    ends = frame[frame["generation"] == frame["generation"].max()]
-    name = f"final {options.statistic}"
-    best = glance.extremes(name, ends, options.hue, "objective", scene.labels)
-    return Note("", runs_note(frame, options.statistic, "line"), best)
+    return Note("", runs_note(frame, options.statistic, "line"))

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis import naming
-from bezierplan.figures import glance, style
+from bezierplan.figures import style
 from bezierplan.figures.groups import (
     axis_label,
     published,
@@ -145,7 +144,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     ]
     if np.nanmax(np.diff(ends, axis=0), initial=0) > _SEEN * axes.bbox.height:
         axes.plot([], [], **style.INTERVAL)
-    return Note("", runs_note(ours, options.statistic, "point"), _glance(ours, scene, options))
+    return Note("", runs_note(ours, options.statistic, "point"))
 
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
@@ -166,11 +165,3 @@ def _of_table(look: dict, points: int) -> dict:
     if points > _MOST_JOINED:
         return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
     return look if points <= _FEW else look | {"marker": ""}
-
-
-def _glance(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
-    """Which line is lowest and highest at most places, or where the only line is."""
-    name = f"{options.statistic} {naming.column_name(options.metric, scene.labels)}"
-    if options.hue is None:
-        return glance.extremes(name, statistics, options.x, "value", scene.labels)
-    return glance.mostly(name, statistics, options.x, options.hue, scene.labels)

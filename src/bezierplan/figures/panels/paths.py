@@ -328,7 +328,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
 
 
 def _note(frame: pd.DataFrame, unit: str) -> Note:
-    """The length of the path; for the caption its run, and what else there is to say of it."""
+    """The length of the path; for the notes its run, and what else there is to say of it."""
     row, parts = frame.iloc[0], set(frame["part"])
     if "path" not in parts:
         return Note("no path", run_note(frame, "no path"))
@@ -338,5 +338,5 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
         clauses = [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
     clauses.append(feasible_note(frame))
     if np.isfinite(row.get("printed", np.nan)):
-        clauses.append(f"shortest printed {row['printed']:.2f} {unit}")
+        clauses.append(f"shortest printed {amount(format(row['printed'], '.2f'), unit)}")
     return Note(f"length {amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses))

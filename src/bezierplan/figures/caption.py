@@ -1,0 +1,59 @@
+"""The caption of a table or figure: the same on page and site, in LaTeX, text and report."""
+
+from typing import NamedTuple
+
+from bezierplan.analysis.words import WORDS
+
+MOST_FINDINGS = 2
+
+
+class CaptionClaim(NamedTuple):
+    """A claim about a table or figure. words: its verdict, empty if docs/outcome has none."""
+
+    claim: str
+    statement: str
+    words: str
+
+
+class Caption(NamedTuple):
+    """A caption in parts.
+
+    remark: what the paper shows, where no claim is about it, or which runs means leave out.
+    behind: the runs that it shows.
+    """
+
+    title: str
+    findings: list[CaptionClaim]
+    remark: str
+    behind: str
+
+    def write(self) -> str:
+        """Return the caption as one line, without claims whose verdict is not known."""
+        found = [f"{each.statement}: {each.words}" for each in self.findings if each.words]
+        shown = f"Shown: {self.behind}" if self.behind else ""
+        return " ".join(f"{part}." for part in (self.title, *found, self.remark, shown) if part)
+
+
+def tell(verdict: str, runs: int, which: str = "") -> str:
+    """Return a verdict in words with the runs that it rests on.
+
+    >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
+    ('contradicted by 4,000 runs', 'not decided by these 10 runs')
+    """
+    words = {0: "our calculation", 1: "this run" if which else "1 run"}
+    return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
+
+
+def tell_both(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
+    """Return the verdict of many runs, after that of those shown if it differs.
+
+    >>> tell_both("contradicted", 4000, "undecided", 10)
+    'not decided by these 10 runs, contradicted by 4,000'
+    """
+    many = tell(verdict, runs)
+    if verdict_here in ("", verdict, "depends", "untestable") or verdict == "untestable":
+        return many
+    first = tell(verdict_here, runs_here, "these ")
+    if verdict == "depends":
+        return f"{first}, {'and' if verdict_here == 'undecided' else 'but'} {many}"
+    return f"{first}, {many.removesuffix(' runs')}"
