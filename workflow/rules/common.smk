@@ -271,8 +271,6 @@ def caption(wildcards, output):
     )
 
 
-
-
 def compared(scale, ending):
     """Files of one kind of all tables of a scale that have published numbers."""
     return [
