@@ -1,0 +1,282 @@
+"""What a method adds to the baseline: excess length against the tightest bend, in which the exact
+shortest path with rounded corners is a line over all turning radii, or against CPU time.
+
+A panel is of one problem, or of a family of drawn ones: then a point is the median of the problems'
+medians, and of the line at each radius. A path with corners bends without limit: it enters no
+median, but is counted; only where all have corners the median is of their excess.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import metrics, naming, statistics
+from bezierplan.figures import style
+from bezierplan.figures.groups import axis_label, counts
+from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+    from bezierplan.workspaces.problem import Problem
+
+_BASELINE = "rounded_shortest_path"
+
+# A method below this share of free paths adds nothing.
+_OFTEN_FREE = 0.95
+
+# Excesses that differ by less are equal.
+_EQUAL = 1e-6
+
+# Radii of the line in each decade, and how many times smaller the least is than the largest that
+# fits.
+_RADII, _RANGE = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 50
+
+# Where a share stands beside its mark, in points: the nearest place that is free. Sizes of its
+# letters and of a mark, and of a panel, on one sheet of two columns, without what stands beside it.
+_PLACES = [
+    (side * near, high)
+    for near, rise in ((5, 0), (5, 7), (9, 14), (14, 21), (20, 28))
+    for high in dict.fromkeys((rise, -rise))
+    for side in (1, -1)
+]
+_LETTER, _LINE, _MARK, _MARGIN = 3.3, 7.0, 2.5, 40.0
+
+
+class Options(RunsPanel):
+    x: Literal["bend", "cpu_s"] = Field(
+        "bend",
+        description="what excess length is drawn against: bend, the largest curvature, with the "
+        "rounded shortest path as a line over turning radii (left out: this), or cpu_s",
+    )
+
+
+def data(results: Results, options: Options) -> pd.DataFrame:
+    """One row a method, and one a radius of the line.
+
+    Columns: part (method or line); of methods: method, runs and feasible_runs (counts), free (share
+    of paths that the certified checker accepts), cornered (free paths with corners), problems, and
+    against bend adds, in how many problems no point of the line is as short and as smooth as the
+    method's interval, none for the baseline; of the line: radius, in units; x, y (medians) and
+    x_low, x_high, y_low, y_high (their 95 % bootstrap intervals, those of a single number at it).
+    """
+    import pandas as pd
+
+    runs = results.runs.sort_values("id")
+    of_bend = options.x == "bend"
+    runs = runs.assign(
+        x=_bends(runs) if of_bend else runs["cpu_s"],
+        y=metrics.values(runs, "gap", results.problems),
+    )
+    bounds = runs.groupby("problem")["bound"].first()
+    lines = _lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
+    rows: list[dict[str, Any]] = [
+        {"part": "line", "radius": radius} | _middle(own[["x", "y"]].to_numpy(), f"{radius}")
+        for radius, own in lines.groupby("radius")
+    ]
+    for method, own in runs.groupby("method"):
+        places = {
+            name: _middle(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
+            for name, few in own.groupby("problem")
+        }
+        medians = np.array([[place["x"], place["y"]] for place in places.values()])
+        row = {"part": "method", "method": method, "problems": len(places)} | counts(own)
+        row |= {"free": own["feasible"].mean(), "cornered": int(np.isposinf(own["x"]).sum())}
+        row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
+        row |= next(iter(places.values())) if len(places) == 1 else {}
+        if of_bend and own["planner"].iloc[0] != _BASELINE:
+            free = own.groupby("problem")["feasible"].mean().clip(upper=row["free"])
+            row["adds"] = sum(
+                adds(
+                    lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy(),
+                    (place["x_low"], place["y_low"]),
+                    free[name] if row["free"] >= _OFTEN_FREE else 0.0,
+                )
+                for name, place in places.items()
+            )
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def adds(line: np.ndarray, least: tuple[float, float], free: float) -> bool:
+    """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
+    smooth and as short as the lower ends of the intervals of its medians, and it is often free.
+    """
+    bend, excess = least
+    as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
+    return bool(free >= _OFTEN_FREE and not as_good.any())
+
+
+def _bends(runs: pd.DataFrame) -> np.ndarray:
+    """Return the largest curvature (n,) of each free path, infinite with corners, NaN of others."""
+    from bezierplan.analysis.results import path_of
+    from bezierplan.geometry.tightest_turn import largest_curvature
+
+    cornered = metrics.values(runs, "corners", {}) > 0
+    paths = map(path_of, runs[["path_curve", "path_points"]].to_dict("records"))
+    return np.array(
+        [
+            math.nan if not free else math.inf if sharp else largest_curvature(path)
+            for path, free, sharp in zip(paths, runs["feasible"], cornered)
+        ]
+    )
+
+
+def _lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
+    """Return the rounded shortest paths: problem, radius that is asked, x (bend) and y (excess);
+    from a sharp path to the roundest, at the same radii in all problems.
+    """
+    import pandas as pd
+
+    def point(name: str, radius: float) -> tuple[str, float, float, float]:
+        return name, radius, *_rounded(problems[name], bounds[name], radius)
+
+    names = [name for name in problems if wanted and math.isfinite(bounds[name])]
+    rows = [point(name, math.inf) for name in names]
+    widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
+    low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high or low)) + 1)
+    ladder = [float(f"{part}e{power}") for power in decades for part in _RADII]
+    radii = [0.0, *(radius for radius in ladder if low <= radius <= high)]
+    rows += [point(*each) for each in itertools.product(names, radii)]
+    return pd.DataFrame(rows, columns=["problem", "radius", "x", "y"])
+
+
+def _rounded(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
+    """Return tightest bend and excess of the shortest path rounded by a radius."""
+    from bezierplan.geometry.tightest_turn import largest_curvature
+    from bezierplan.planners import rounded_shortest_path
+
+    draws = generator("trade/rounded")  # unused: the path is exact
+    plan = rounded_shortest_path.plan(problem, draws, turning_radius=radius, excess=math.inf)
+    # An arc of a tiny angle may be too short for its curvature to be measured.
+    kept = 0.0 if plan.extra["corners"] else plan.extra["least_radius"]
+    bend = max(largest_curvature(plan.path), 1 / kept) if kept else math.inf
+    return bend, plan.objective / bound - 1
+
+
+def _middle(points: np.ndarray, name: str) -> dict[str, float]:
+    """Return medians of points (n, 2) with their intervals, without those that bend without limit
+    unless all do.
+    """
+    bounded = points[np.isfinite(points[:, 0])]
+    found = {}
+    for axis, values in zip("xy", (bounded if len(bounded) else points).T):
+        numbers = np.sort(values[~np.isnan(values)])
+        middle = found[axis] = statistics.statistic("median", numbers)
+        ends = middle, middle
+        if len(numbers) > 1 and math.isfinite(middle):
+            ends = statistics.interval("median", numbers, generator(f"trade/{name}/{axis}"))
+        found[f"{axis}_low"], found[f"{axis}_high"] = ends
+    return found
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    ends = [*(f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high"))]
+    frame, left, right = _with_edges(frame.dropna(subset=["x", "y"]))
+    own = frame[frame["part"] == "method"]
+    axes.set_xlim(left / 1.15, right * 1.15)
+    style.measure(axes.yaxis, "symlog")
+    style.measure(axes.xaxis, "log", "s" if options.x == "cpu_s" else "")
+    line = frame[frame["part"] == "line"].sort_values("radius") if "radius" in frame else frame[:0]
+    if len(line):
+        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
+        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
+    for _, rows, look in style.groups(own, "method", options.where, scene):
+        x, x_low, x_high, y, y_low, y_high = rows[ends].iloc[0]
+        if rows["free"].iloc[0] < _OFTEN_FREE:
+            look |= {"markerfacecolor": style.FREE}
+            axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
+        errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
+        axes.errorbar(x, y, **errors, **look | {"linestyle": "none"})
+    _write_shares(axes, own)
+    if options.x == "bend":
+        ticks = [tick for tick in axes.get_xticks() if 1.3 * left < tick < right / 1.3]
+        names = {left: "0", right: "corners"}
+        shown = [tick for tick in names if (frame["x"] == tick).any()]
+        labels = [f"{tick:,.10g}" for tick in ticks] + [names[tick] for tick in shown]
+        axes.set_xticks([*ticks, *shown], labels)
+    axes.set_xlabel(
+        axis_label("cpu_s", scene) if options.x == "cpu_s" else f"tightest bend (1/{scene.unit})"
+    )
+    axes.set_ylabel(axis_label("gap", scene))
+    axes.grid(visible=True)
+    return _note(own, scene)
+
+
+def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, float, float]:
+    """Return the table with bends of 0 and without limit at the edges of a logarithmic axis, and
+    these edges.
+    """
+    columns = ["x", "x_low", "x_high"]
+    numbers = frame[columns].to_numpy()
+    inside = numbers[np.isfinite(numbers) & (numbers > 0)]
+    low, high = inside.min(initial=math.inf), inside.max(initial=0)
+    left, right = (low / 1.6, 1.6 * high) if len(inside) else (0.5, 2.0)
+    left, right = left if (numbers <= 0).any() else low, right if np.isinf(numbers).any() else high
+    left, right = (left, right) if left < right else (left / 2, right * 2)
+    return frame.assign(**frame[columns].clip(left, right)), left, right
+
+
+def _write_shares(axes: Axes, own: pd.DataFrame) -> None:
+    """Write the share of free paths beside each mark, and how many have corners, where no other
+    text or mark is.
+    """
+    grid = axes.get_subplotspec().get_gridspec()
+    width = 72 * axes.figure.get_figwidth() / grid.ncols - _MARGIN
+    size = np.array([width, style.PANEL_HEIGHT * width])
+    spots = axes.transAxes.inverted().transform(axes.transData.transform(own[["x", "y"]])) * size
+    taken = [(*(spot - _MARK), *(spot + _MARK)) for spot in spots]
+    for (_, row), spot in zip(own.iterrows(), spots):
+        text = f"{100 * row['free']:.0f} %"
+        if row["cornered"]:
+            text += f", corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}"
+        wide = _LETTER * len(text)
+
+        def box(place: tuple[int, int], spot: Any = spot, wide: float = wide) -> tuple:
+            x, y = spot + place
+            first = x - wide if place[0] < 0 else x
+            return first, y - _LINE / 2, first + wide, y + _LINE / 2
+
+        def cost(place: tuple[int, int], box: Any = box) -> float:
+            left, low, right, high = box(place)
+            out = left < 0 or low < 0 or right > size[0] or high > size[1]
+            over = sum(a < right and left < c and b < high and low < d for a, b, c, d in taken)
+            return over + 10 * out
+
+        place = min(_PLACES, key=cost)
+        taken.append(box(place))
+        axes.annotate(
+            text,
+            row[["x", "y"]],
+            place,
+            textcoords="offset points",
+            ha="right" if place[0] < 0 else "left",
+            va="center",
+            fontsize="x-small",
+        )
+
+
+def _note(own: pd.DataFrame, scene: Any) -> Note:
+    """Say what the panel shows, and which methods add something."""
+    several = own["problems"].max() > 1
+    said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
+    said.append("beside each mark the share of paths that are free")
+    if "adds" in own and own["adds"].notna().any():
+        names = [
+            naming.printed(row.method, "method", scene.labels)
+            + (f" in {row.adds:.0f} of {row.problems:.0f}" if several else "")
+            for row in own.itertuples()
+            if row.adds > 0
+        ]
+        said.append(f"adds something: {', '.join(names) or 'none'}")
+    return Note("", "; ".join(said))
