@@ -22,6 +22,8 @@ from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import pandas as pd
     from matplotlib.axes import Axes
 
@@ -39,6 +41,15 @@ _EQUAL = 1e-6
 # Radii of the line in each decade, and how many times smaller the least is than the largest that
 # fits.
 _RADII, _RANGE = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 50
+
+# Excess is drawn in proportion up to this, and then by its logarithm; the ticks of its axis.
+_LINEAR = 0.01
+_TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
+
+# How far from all others, as a factor, bends at the edges stand; and what the axis spans at least.
+_EDGE, _LEAST_SPAN = 1.6, 5.0
+
+_ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
 
 # Where a share stands beside its mark, in points: the nearest place that is free. Sizes of its
 # letters and of a mark, and of a panel, on one sheet of two columns, without what stands beside it.
@@ -180,90 +191,121 @@ def _middle(points: np.ndarray, name: str) -> dict[str, float]:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    ends = [*(f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high"))]
-    frame, left, right = _with_edges(frame.dropna(subset=["x", "y"]))
-    own = frame[frame["part"] == "method"]
-    axes.set_xlim(left / 1.15, right * 1.15)
-    style.measure(axes.yaxis, "symlog")
-    style.measure(axes.xaxis, "log", "s" if options.x == "cpu_s" else "")
-    line = frame[frame["part"] == "line"].sort_values("radius") if "radius" in frame else frame[:0]
+    of_bend = options.x == "bend"
+    placed, sides, edges = _with_edges(frame)
+    groups = style.groups(placed[placed["part"] == "method"], "method", options.where, scene)
+    line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
+    axes.set_xlim(sides)
+    style.measure(axes.xaxis, "log", "" if of_bend else "s")
+    top = 1.5 * np.nanmax(placed[["y", "y_high"]].to_numpy(), initial=_EQUAL)
+    axes.set_yscale("symlog", linthresh=_LINEAR)
+    axes.set_ylim(-0.1 * min(top, _LINEAR), top)
+    ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
+    axes.set_yticks(ticks, map("{:g}".format, ticks))
+    axes.minorticks_off()
+    if edges:
+        apart = 0.08 * math.log(sides[1] / sides[0])
+        clear = [
+            tick
+            for tick in axes.get_xticks()
+            if sides[0] < tick < sides[1]
+            and all(abs(math.log(tick / edge)) > apart for edge in edges)
+        ]
+        axes.set_xticks([*clear, *edges], [*map("{:g}".format, clear), *edges.values()])
     if len(line):
         colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
         look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
         axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
-    for _, rows, look in style.groups(own, "method", options.where, scene):
-        x, x_low, x_high, y, y_low, y_high = rows[ends].iloc[0]
+    for _, rows, look in groups:
+        x, x_low, x_high, y, y_low, y_high = rows[_ENDS].iloc[0]
         if rows["free"].iloc[0] < _OFTEN_FREE:
             look |= {"markerfacecolor": style.FREE}
             axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
         errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
         axes.errorbar(x, y, **errors, **look | {"linestyle": "none"})
-    _write_shares(axes, own)
-    if options.x == "bend":
-        ticks = [tick for tick in axes.get_xticks() if 1.3 * left < tick < right / 1.3]
-        names = {left: "0", right: "corners"}
-        shown = [tick for tick in names if (frame["x"] == tick).any()]
-        labels = [f"{tick:,.10g}" for tick in ticks] + [names[tick] for tick in shown]
-        axes.set_xticks([*ticks, *shown], labels)
-    axes.set_xlabel(
-        axis_label("cpu_s", scene) if options.x == "cpu_s" else f"tightest bend (1/{scene.unit})"
-    )
+    _write_shares(axes, [(rows.iloc[0], look["color"]) for _, rows, look in groups])
+    name = f"tightest bend (1/{scene.unit})" if of_bend else axis_label("cpu_s", scene)
+    axes.set_xlabel(name)
     axes.set_ylabel(axis_label("gap", scene))
     axes.grid(visible=True)
-    return _note(own, scene)
+    return _note(frame[frame["part"] == "method"], scene)
 
 
-def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, float, float]:
-    """Return the table with bends of 0 and without limit at the edges of a logarithmic axis, and
-    these edges.
+def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
+    """Return the table with straight paths, and those that bend like corners, at the edges of a
+    logarithmic axis; the ends of the axis; and the names of edges at which something stands.
     """
-    columns = ["x", "x_low", "x_high"]
-    numbers = frame[columns].to_numpy()
-    inside = numbers[np.isfinite(numbers) & (numbers > 0)]
-    low, high = inside.min(initial=math.inf), inside.max(initial=0)
-    left, right = (low / 1.6, 1.6 * high) if len(inside) else (0.5, 2.0)
-    left, right = left if (numbers <= 0).any() else low, right if np.isinf(numbers).any() else high
-    left, right = (left, right) if left < right else (left / 2, right * 2)
-    return frame.assign(**frame[columns].clip(left, right)), left, right
+    numbers = frame[["x", "x_low", "x_high"]]
+    inside = numbers.to_numpy()[np.isfinite(numbers) & (numbers > 0)]
+    of_line = frame.loc[(frame["part"] == "line") & (frame["x"] > 0), "x"]
+    inside = inside[inside <= _RANGE * of_line.min()] if len(of_line) else inside
+    low, high = (inside.min(), inside.max()) if len(inside) else (1.0, 1.0)
+    edges = {}
+    if (numbers <= 0).any(axis=None):
+        edges[low := low / _EDGE] = "0"
+    if (numbers > high).any(axis=None):
+        edges[high := high * _EDGE] = "sharp"
+    wider = max(1.15, math.sqrt(_LEAST_SPAN * low / high))
+    return frame.assign(**numbers.clip(low, high)), [low / wider, high * wider], edges
 
 
-def _write_shares(axes: Axes, own: pd.DataFrame) -> None:
-    """Write the share of free paths beside each mark, and how many have corners, where no other
-    text or mark is.
+def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]]) -> None:
+    """Write the share of free paths beside each mark in its colour, and how many have corners,
+    where no other text or mark is.
     """
     grid = axes.get_subplotspec().get_gridspec()
     width = 72 * axes.figure.get_figwidth() / grid.ncols - _MARGIN
     size = np.array([width, style.PANEL_HEIGHT * width])
-    spots = axes.transAxes.inverted().transform(axes.transData.transform(own[["x", "y"]])) * size
-    taken = [(*(spot - _MARK), *(spot + _MARK)) for spot in spots]
-    for (_, row), spot in zip(own.iterrows(), spots):
+    to_points = axes.transData - axes.transAxes
+
+    def spot(row: pd.Series, x: str, y: str) -> np.ndarray:
+        return to_points.transform(row[[x, y]].to_numpy(dtype=float)) * size
+
+    marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
+    taken = []
+    for row, _ in marks:
+        taken.append((*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK)))
+        taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
+        taken.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
+    for row, colour in marks:
         text = f"{100 * row['free']:.0f} %"
         if row["cornered"]:
             text += f", corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}"
-        wide = _LETTER * len(text)
-
-        def box(place: tuple[int, int], spot: Any = spot, wide: float = wide) -> tuple:
-            x, y = spot + place
-            first = x - wide if place[0] < 0 else x
-            return first, y - _LINE / 2, first + wide, y + _LINE / 2
-
-        def cost(place: tuple[int, int], box: Any = box) -> float:
-            left, low, right, high = box(place)
-            out = left < 0 or low < 0 or right > size[0] or high > size[1]
-            over = sum(a < right and left < c and b < high and low < d for a, b, c, d in taken)
-            return over + 10 * out
-
-        place = min(_PLACES, key=cost)
-        taken.append(box(place))
+        box = [_box(spot(row, "x", "y") + place, text, place[0] < 0) for place in _PLACES]
+        costs = [_cost(each, taken, size) for each in box]
+        best = int(np.argmin(costs))
+        taken.append(box[best])
+        far = abs(_PLACES[best][1]) > _LINE
         axes.annotate(
             text,
             row[["x", "y"]],
-            place,
+            _PLACES[best],
             textcoords="offset points",
-            ha="right" if place[0] < 0 else "left",
+            ha="right" if _PLACES[best][0] < 0 else "left",
             va="center",
             fontsize="x-small",
+            color=colour,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.3, "color": colour} if far else None,
         )
+
+
+Box = tuple[float, float, float, float]
+"""Left, lower, right and upper end, in points."""
+
+
+def _box(at: np.ndarray, text: str, leftwards: bool) -> Box:
+    wide = _LETTER * len(text)
+    left = at[0] - wide if leftwards else at[0]
+    return left, at[1] - _LINE / 2, left + wide, at[1] + _LINE / 2
+
+
+def _cost(box: Box, taken: list[Box], size: np.ndarray) -> int:
+    """Return how many other boxes a text covers; to leave the panel is worse."""
+    left, low, right, high = box
+    leaves = left < 0 or low < 0 or right > size[0] or high > size[1]
+    return 99 * leaves + sum(
+        a < right and left < c and b < high and low < d for a, b, c, d in taken
+    )
 
 
 def _note(own: pd.DataFrame, scene: Any) -> Note:
@@ -271,12 +313,17 @@ def _note(own: pd.DataFrame, scene: Any) -> Note:
     several = own["problems"].max() > 1
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside each mark the share of paths that are free")
+    if none := [*own["method"][own["free"] == 0]]:
+        said.append(f"no free path: {_listed(none, scene)}")
     if "adds" in own and own["adds"].notna().any():
-        names = [
-            naming.printed(row.method, "method", scene.labels)
-            + (f" in {row.adds:.0f} of {row.problems:.0f}" if several else "")
-            for row in own.itertuples()
-            if row.adds > 0
+        adding = own[own["adds"] > 0]
+        where = [
+            f" in {row.adds:.0f} of {row.problems:.0f}" * several for row in adding.itertuples()
         ]
-        said.append(f"adds something: {', '.join(names) or 'none'}")
+        said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
     return Note("", "; ".join(said))
+
+
+def _listed(methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")) -> str:
+    printed = (naming.printed(method, "method", scene.labels) for method in methods)
+    return ", ".join(name + beside for name, beside in zip(printed, more))
