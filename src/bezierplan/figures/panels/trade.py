@@ -46,8 +46,9 @@ _RADII, _RANGE = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 50
 _LINEAR = 0.01
 _TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
 
-# How far from all others, as a factor, bends at the edges stand; and what the axis spans at least.
-_EDGE, _LEAST_SPAN = 1.6, 5.0
+# How far from all others, as a factor, bends at the edges stand; what the axis spans at least; and
+# how far apart its ticks are, as a share of it.
+_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 0.14
 
 _ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
 
@@ -203,27 +204,28 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
     axes.set_yticks(ticks, map("{:g}".format, ticks))
     axes.minorticks_off()
-    if edges:
-        apart = 0.08 * math.log(sides[1] / sides[0])
-        clear = [
-            tick
-            for tick in axes.get_xticks()
-            if sides[0] < tick < sides[1]
-            and all(abs(math.log(tick / edge)) > apart for edge in edges)
-        ]
-        axes.set_xticks([*clear, *edges], [*map("{:g}".format, clear), *edges.values()])
+    ticks = [*edges]
+    for tick in axes.get_xticks():
+        away = [abs(math.log(tick / other)) for other in ticks] + [math.inf]
+        if sides[0] < tick < sides[1] and min(away) > _APART * math.log(sides[1] / sides[0]):
+            ticks.append(tick)
+    axes.set_xticks(ticks, [edges.get(tick, f"{tick:g}") for tick in ticks] if of_bend else None)
     if len(line):
         colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
         look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
         axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
     for _, rows, look in groups:
         x, x_low, x_high, y, y_low, y_high = rows[_ENDS].iloc[0]
+        look |= {"linestyle": "none"}
+        axes.plot([], [], **look)
+        hollow = {"label": None}
         if rows["free"].iloc[0] < _OFTEN_FREE:
-            look |= {"markerfacecolor": style.FREE}
+            hollow["markerfacecolor"] = style.FREE
             axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
         errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
-        axes.errorbar(x, y, **errors, **look | {"linestyle": "none"})
-    _write_shares(axes, [(rows.iloc[0], look["color"]) for _, rows, look in groups])
+        axes.errorbar(x, y, **errors, **look | hollow)
+    marks = [(rows.iloc[0], look["color"]) for _, rows, look in groups]
+    _write_shares(axes, marks, line[["x", "y"]].to_numpy())
     name = f"tightest bend (1/{scene.unit})" if of_bend else axis_label("cpu_s", scene)
     axes.set_xlabel(name)
     axes.set_ylabel(axis_label("gap", scene))
@@ -235,7 +237,7 @@ def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[fl
     """Return the table with straight paths, and those that bend like corners, at the edges of a
     logarithmic axis; the ends of the axis; and the names of edges at which something stands.
     """
-    numbers = frame[["x", "x_low", "x_high"]]
+    numbers = frame[["x", "x_low", "x_high"]].where(frame["y"].notna())
     inside = numbers.to_numpy()[np.isfinite(numbers) & (numbers > 0)]
     of_line = frame.loc[(frame["part"] == "line") & (frame["x"] > 0), "x"]
     inside = inside[inside <= _RANGE * of_line.min()] if len(of_line) else inside
@@ -249,9 +251,9 @@ def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[fl
     return frame.assign(**numbers.clip(low, high)), [low / wider, high * wider], edges
 
 
-def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]]) -> None:
+def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarray) -> None:
     """Write the share of free paths beside each mark in its colour, and how many have corners,
-    where no other text or mark is.
+    where no other text or mark is, nor the line (n, 2).
     """
     grid = axes.get_subplotspec().get_gridspec()
     width = 72 * axes.figure.get_figwidth() / grid.ncols - _MARGIN
@@ -261,8 +263,11 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]]) -> None:
     def spot(row: pd.Series, x: str, y: str) -> np.ndarray:
         return to_points.transform(row[[x, y]].to_numpy(dtype=float)) * size
 
+    drawn = to_points.transform(line) * size if len(line) else line
+    ends = np.sort([drawn[:-1], drawn[1:]], axis=0)
+    taken: list[Box] = [*map(tuple, np.hstack([*ends]))]
+
     marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
-    taken = []
     for row, _ in marks:
         taken.append((*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK)))
         taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
@@ -310,16 +315,15 @@ def _cost(box: Box, taken: list[Box], size: np.ndarray) -> int:
 
 def _note(own: pd.DataFrame, scene: Any) -> Note:
     """Say what the panel shows, and which methods add something."""
-    several = own["problems"].max() > 1
+    several = bool(own["problems"].max() > 1)
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside each mark the share of paths that are free")
     if none := [*own["method"][own["free"] == 0]]:
         said.append(f"no free path: {_listed(none, scene)}")
     if "adds" in own and own["adds"].notna().any():
         adding = own[own["adds"] > 0]
-        where = [
-            f" in {row.adds:.0f} of {row.problems:.0f}" * several for row in adding.itertuples()
-        ]
+        fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
+        where = fields if several else itertools.repeat("")
         said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
     return Note("", "; ".join(said))
 
