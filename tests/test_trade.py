@@ -77,15 +77,15 @@ def test_a_method_adds_something_only_under_the_line_and_if_it_is_free(radius):
 
 
 def test_paths_with_corners_are_counted_and_enter_no_median():
-    smooth = runs_of("mixed", 2)
+    smooth = runs_of("mixed", 0.5)
     mixed = [*smooth[:3], *runs_of("mixed", 1.5, radius=0)[3:]]
-    _, own = drawn(mixed, runs_of("cornered", 1.5, radius=0), runs_of("smooth", 2))
+    _, own = drawn(mixed, runs_of("cornered", 1.5, radius=0), runs_of("smooth", 0.5))
     assert own["cornered"].to_dict() == {"mixed": 7, "cornered": 10, "smooth": 0}
     assert own["x"]["mixed"] == own["x"]["smooth"] < math.inf
     assert own["y"]["mixed"] == own["y"]["smooth"]
     assert own["x"]["cornered"] == math.inf
     assert own["y"]["cornered"] == pytest.approx(0.5)
-    assert own["adds"]["cornered"] == 0
+    assert own["adds"].to_dict() == {"mixed": 0, "cornered": 0, "smooth": 1}
 
 
 def test_of_a_family_the_problems_are_counted_each_beside_its_own_line():

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
 _BASELINE = "rounded_shortest_path"
 
-# A method below this share of free paths adds nothing.
+# A method with fewer free paths than this share is drawn hollow, and adds nothing; nor does one
+# with fewer that are free and have no corners.
 _OFTEN_FREE = 0.95
 
 # Excesses that differ by less are equal.
@@ -105,12 +106,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
         row |= next(iter(places.values())) if len(places) == 1 else {}
         if of_bend and own["planner"].iloc[0] != _BASELINE:
-            free = own.groupby("problem")["feasible"].mean().clip(upper=row["free"])
+            round_paths = np.isfinite(own["x"])
+            often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
             row["adds"] = sum(
                 adds(
                     lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy(),
                     (place["x_low"], place["y_low"]),
-                    free[name] if row["free"] >= _OFTEN_FREE else 0.0,
+                    often[name],
                 )
                 for name, place in places.items()
             )
@@ -118,13 +120,14 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def adds(line: np.ndarray, least: tuple[float, float], free: float) -> bool:
+def adds(line: np.ndarray, least: tuple[float, float], often: float) -> bool:
     """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
-    smooth and as short as the lower ends of the intervals of its medians, and it is often free.
+    smooth and as short as the lower ends of the intervals of its medians, and its paths are often
+    free and without corners, the share given.
     """
     bend, excess = least
     as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
-    return bool(free >= _OFTEN_FREE and not as_good.any())
+    return bool(often >= _OFTEN_FREE and not as_good.any())
 
 
 def _bends(runs: pd.DataFrame) -> np.ndarray:
