@@ -48,8 +48,8 @@ _LINEAR = 0.01
 _TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
 
 # How far from all others, as a factor, bends at the edges stand; what the axis spans at least; and
-# how far apart its ticks are, as a share of it.
-_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 0.14
+# how far apart its ticks are, in points.
+_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 30.0
 
 _ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
 
@@ -57,11 +57,14 @@ _ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
 # letters and of a mark, and of a panel, on one sheet of two columns, without what stands beside it.
 _PLACES = [
     (side * near, high)
-    for near, rise in ((5, 0), (5, 7), (9, 14), (14, 21), (20, 28))
+    for near, rise in ((5, 0), (5, 7), (9, 14), (14, 21), (30, 12), (20, 28), (40, 24))
     for high in dict.fromkeys((rise, -rise))
     for side in (1, -1)
 ]
 _LETTER, _LINE, _MARK, _MARGIN = 3.3, 7.0, 2.5, 40.0
+
+# How many lines it had rather cover than one mark or text.
+_WORSE = 3
 
 
 class Options(RunsPanel):
@@ -207,10 +210,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
     axes.set_yticks(ticks, map("{:g}".format, ticks))
     axes.minorticks_off()
-    ticks = [*edges]
+    ticks, size = [*edges], _size(axes)
     for tick in axes.get_xticks():
         away = [abs(math.log(tick / other)) for other in ticks] + [math.inf]
-        if sides[0] < tick < sides[1] and min(away) > _APART * math.log(sides[1] / sides[0]):
+        if sides[0] < tick < sides[1] and size[0] * min(away) > _APART * math.log(
+            sides[1] / sides[0]
+        ):
             ticks.append(tick)
     axes.set_xticks(ticks, [edges.get(tick, f"{tick:g}") for tick in ticks] if of_bend else None)
     if len(line):
@@ -226,7 +231,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             hollow["markerfacecolor"] = style.FREE
             axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
         errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
-        axes.errorbar(x, y, **errors, **look | hollow)
+        axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
     marks = [(rows.iloc[0], look["color"]) for _, rows, look in groups]
     _write_shares(axes, marks, line[["x", "y"]].to_numpy())
     name = f"tightest bend (1/{scene.unit})" if of_bend else axis_label("cpu_s", scene)
@@ -258,9 +263,7 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarr
     """Write the share of free paths beside each mark in its colour, and how many have corners,
     where no other text or mark is, nor the line (n, 2).
     """
-    grid = axes.get_subplotspec().get_gridspec()
-    width = 72 * axes.figure.get_figwidth() / grid.ncols - _MARGIN
-    size = np.array([width, style.PANEL_HEIGHT * width])
+    size = _size(axes)
     to_points = axes.transData - axes.transAxes
 
     def spot(row: pd.Series, x: str, y: str) -> np.ndarray:
@@ -272,7 +275,8 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarr
 
     marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
     for row, _ in marks:
-        taken.append((*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK)))
+        mark = (*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK))
+        taken += [mark] * _WORSE
         taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
         taken.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
     for row, colour in marks:
@@ -282,7 +286,7 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarr
         box = [_box(spot(row, "x", "y") + place, text, place[0] < 0) for place in _PLACES]
         costs = [_cost(each, taken, size) for each in box]
         best = int(np.argmin(costs))
-        taken.append(box[best])
+        taken += [box[best]] * _WORSE
         far = abs(_PLACES[best][1]) > _LINE
         axes.annotate(
             text,
@@ -295,6 +299,13 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarr
             color=colour,
             arrowprops={"arrowstyle": "-", "linewidth": 0.3, "color": colour} if far else None,
         )
+
+
+def _size(axes: Axes) -> np.ndarray:
+    """Return about how wide and high the panel will be, in points."""
+    columns = axes.get_subplotspec().get_gridspec().ncols
+    width = 72 * axes.figure.get_figwidth() / columns - _MARGIN
+    return np.array([width, style.PANEL_HEIGHT * width])
 
 
 Box = tuple[float, float, float, float]
