@@ -59,12 +59,12 @@ def test_the_line_gets_longer_as_it_gets_smoother_from_sharp_to_the_widest():
     assert within["x"].to_numpy() == pytest.approx(1 / within["radius"].to_numpy(), rel=0.03)
 
 
-@pytest.mark.parametrize("radius", [0.3, 0.7, 1.1])
+@pytest.mark.parametrize("radius", [0.3, 0.7, 0.73, 1.1])
 def test_a_method_adds_something_only_under_the_line_and_if_it_is_free(radius):
     under = {"factor": 0.5, "radius": radius}
     _, own = drawn(
         runs_of("under", **under),
-        runs_of("above", 3, radius=radius),
+        runs_of("above", 1.02, radius=radius),
         runs_of("seldom", **under, free=9),
         runs_of("rounded", **under, planner="rounded_shortest_path"),
     )

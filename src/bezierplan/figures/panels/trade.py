@@ -111,14 +111,14 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         if of_bend and own["planner"].iloc[0] != _BASELINE:
             round_paths = np.isfinite(own["x"])
             often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
-            row["adds"] = sum(
-                adds(
-                    lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy(),
-                    (place["x_low"], place["y_low"]),
-                    often[name],
-                )
-                for name, place in places.items()
-            )
+            row["adds"] = 0
+            for name, place in places.items():
+                # Of all points of the line that are as smooth, the shortest.
+                radius = 1.001 / place["x_low"] if place["x_low"] > 0 else math.inf
+                point = _rounded(results.problems[name], bounds[name], radius)
+                line = lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy()
+                least = place["x_low"], place["y_low"]
+                row["adds"] += adds(np.vstack([line, point]), least, often[name])
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -157,7 +157,7 @@ def _lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.
     def point(name: str, radius: float) -> tuple[str, float, float, float]:
         return name, radius, *_rounded(problems[name], bounds[name], radius)
 
-    names = [name for name in problems if wanted and math.isfinite(bounds[name])]
+    names = list(problems) if wanted else []
     rows = [point(name, math.inf) for name in names]
     widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
     low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
@@ -169,12 +169,14 @@ def _lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.
 
 
 def _rounded(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
-    """Return tightest bend and excess of the shortest path rounded by a radius."""
+    """Return tightest bend and excess of the shortest path rounded by a radius, NaN without one."""
     from bezierplan.geometry.tightest_turn import largest_curvature
     from bezierplan.planners import rounded_shortest_path
 
     draws = generator("trade/rounded")  # unused: the path is exact
     plan = rounded_shortest_path.plan(problem, draws, turning_radius=radius, excess=math.inf)
+    if plan.path is None:
+        return math.nan, math.nan
     # An arc of a tiny angle may be too short for its curvature to be measured.
     kept = 0.0 if plan.extra["corners"] else plan.extra["least_radius"]
     bend = max(largest_curvature(plan.path), 1 / kept) if kept else math.inf
@@ -217,7 +219,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             sides[1] / sides[0]
         ):
             ticks.append(tick)
-    axes.set_xticks(ticks, [edges.get(tick, f"{tick:g}") for tick in ticks] if of_bend else None)
+    names = [edges.get(tick, f"{tick:g}") for tick in ticks]
+    axes.set_xticks(ticks, names if of_bend else None)
     if len(line):
         colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
         look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
@@ -234,8 +237,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
     marks = [(rows.iloc[0], look["color"]) for _, rows, look in groups]
     _write_shares(axes, marks, line[["x", "y"]].to_numpy())
-    name = f"tightest bend (1/{scene.unit})" if of_bend else axis_label("cpu_s", scene)
-    axes.set_xlabel(name)
+    bend = f"tightest bend (1/{scene.unit})"
+    axes.set_xlabel(bend if of_bend else axis_label("cpu_s", scene))
     axes.set_ylabel(axis_label("gap", scene))
     axes.grid(visible=True)
     return _note(frame[frame["part"] == "method"], scene)
