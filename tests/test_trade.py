@@ -110,4 +110,4 @@ def test_a_straight_path_bends_nowhere_and_cannot_be_beaten():
     assert largest_curvature(found.path) == 0
     line = trade._lines({"free": free}, pd.Series({"free": found.length}), True)
     assert line[["x", "y"]].to_numpy() == pytest.approx(0, abs=1e-9)
-    assert not trade.adds(line[["x", "y"]].to_numpy(), (0.0, 0.0), 1.0)
+    assert not trade.adds(line[["x", "y"]].to_numpy(), 0.0, 0.0, 1.0)

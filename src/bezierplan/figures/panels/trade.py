@@ -81,8 +81,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     Columns: part (method or line); of methods: method, runs and feasible_runs (counts), free (share
     of paths that the certified checker accepts), cornered (free paths with corners), problems, and
     against bend adds, in how many problems no point of the line is as short and as smooth as the
-    method's interval, none for the baseline; of the line: radius, in units; x, y (medians) and
-    x_low, x_high, y_low, y_high (their 95 % bootstrap intervals, those of a single number at it).
+    method: as the lower ends of its intervals or, in a family, as its medians; none for the
+    baseline; of the line: radius, in units; x, y (medians) and x_low, x_high, y_low, y_high (their
+    95 % bootstrap intervals, those of a single number at it).
     """
     import pandas as pd
 
@@ -112,23 +113,22 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             round_paths = np.isfinite(own["x"])
             often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
             row["adds"] = 0
+            end = "_low" if len(places) == 1 else ""
             for name, place in places.items():
+                bend, excess = place[f"x{end}"], place[f"y{end}"]
                 # Of all points of the line that are as smooth, the shortest.
-                radius = 1.001 / place["x_low"] if place["x_low"] > 0 else math.inf
+                radius = 1.001 / bend if bend > 0 else math.inf
                 point = _rounded(results.problems[name], bounds[name], radius)
                 line = lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy()
-                least = place["x_low"], place["y_low"]
-                row["adds"] += adds(np.vstack([line, point]), least, often[name])
+                row["adds"] += adds(np.vstack([line, point]), bend, excess, often[name])
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def adds(line: np.ndarray, least: tuple[float, float], often: float) -> bool:
+def adds(line: np.ndarray, bend: float, excess: float, often: float) -> bool:
     """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
-    smooth and as short as the lower ends of the intervals of its medians, and its paths are often
-    free and without corners, the share given.
+    smooth and as short, and its paths are often free and without corners, the share given.
     """
-    bend, excess = least
     as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
     return bool(often >= _OFTEN_FREE and not as_good.any())
 
