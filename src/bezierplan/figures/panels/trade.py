@@ -1,0 +1,350 @@
+"""What a method adds to the baseline: excess length against the tightest bend, in which the exact
+shortest path with rounded corners is a line over all turning radii, or against CPU time.
+
+A panel is of one problem, or of a family of drawn ones: then a point is the median of the problems'
+medians, and of the line at each radius. A path with corners bends without limit: it enters no
+median, but is counted; only where all have corners the median is of their excess.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import metrics, naming, statistics
+from bezierplan.figures import style
+from bezierplan.figures.groups import axis_label, counts
+from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+    from bezierplan.workspaces.problem import Problem
+
+_BASELINE = "rounded_shortest_path"
+
+# A method with fewer free paths than this share is drawn hollow, and adds nothing; nor does one
+# with fewer that are free and have no corners.
+_OFTEN_FREE = 0.95
+
+# Excesses that differ by less are equal.
+_EQUAL = 1e-6
+
+# Radii of the line in each decade, and how many times smaller the least is than the largest that
+# fits.
+_RADII, _RANGE = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 50
+
+# Excess is drawn in proportion up to this, and then by its logarithm; the ticks of its axis.
+_LINEAR = 0.01
+_TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
+
+# How far from all others, as a factor, bends at the edges stand; what the axis spans at least; and
+# how far apart its ticks are, in points.
+_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 30.0
+
+_ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
+
+# Where a share stands beside its mark, in points: the nearest place that is free. Sizes of its
+# letters and of a mark, and of a panel, on one sheet of two columns, without what stands beside it.
+_PLACES = [
+    (side * near, high)
+    for near, rise in ((5, 0), (5, 7), (9, 14), (14, 21), (30, 12), (20, 28), (40, 24))
+    for high in dict.fromkeys((rise, -rise))
+    for side in (1, -1)
+]
+_LETTER, _LINE, _MARK, _MARGIN = 3.3, 7.0, 2.5, 40.0
+
+# How many lines it had rather cover than one mark or text.
+_WORSE = 3
+
+
+class Options(RunsPanel):
+    x: Literal["bend", "cpu_s"] = Field(
+        "bend",
+        description="what excess length is drawn against: bend, the largest curvature, with the "
+        "rounded shortest path as a line over turning radii (left out: this), or cpu_s",
+    )
+
+
+def data(results: Results, options: Options) -> pd.DataFrame:
+    """One row a method, and one a radius of the line.
+
+    Columns: part (method or line); of methods: method, runs and feasible_runs (counts), free (share
+    of paths that the certified checker accepts), cornered (free paths with corners), problems, and
+    against bend adds, in how many problems no point of the line is as short and as smooth as the
+    method: as the lower ends of its intervals or, in a family, as its medians; none for the
+    baseline; of the line: radius, in units; x, y (medians) and x_low, x_high, y_low, y_high (their
+    95 % bootstrap intervals, those of a single number at it).
+    """
+    import pandas as pd
+
+    runs = results.runs.sort_values("id")
+    of_bend = options.x == "bend"
+    runs = runs.assign(
+        x=_bends(runs) if of_bend else runs["cpu_s"],
+        y=metrics.values(runs, "gap", results.problems),
+    )
+    bounds = runs.groupby("problem")["bound"].first()
+    lines = _lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
+    rows: list[dict[str, Any]] = [
+        {"part": "line", "radius": radius} | _middle(own[["x", "y"]].to_numpy(), f"{radius}")
+        for radius, own in lines.groupby("radius")
+    ]
+    for method, own in runs.groupby("method"):
+        places = {
+            name: _middle(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
+            for name, few in own.groupby("problem")
+        }
+        medians = np.array([[place["x"], place["y"]] for place in places.values()])
+        row = {"part": "method", "method": method, "problems": len(places)} | counts(own)
+        row |= {"free": own["feasible"].mean(), "cornered": int(np.isposinf(own["x"]).sum())}
+        row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
+        row |= next(iter(places.values())) if len(places) == 1 else {}
+        if of_bend and own["planner"].iloc[0] != _BASELINE:
+            round_paths = np.isfinite(own["x"])
+            often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
+            row["adds"] = 0
+            end = "_low" if len(places) == 1 else ""
+            for name, place in places.items():
+                bend, excess = place[f"x{end}"], place[f"y{end}"]
+                # Of all points of the line that are as smooth, the shortest.
+                radius = 1.001 / bend if bend > 0 else math.inf
+                point = _rounded(results.problems[name], bounds[name], radius)
+                line = lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy()
+                row["adds"] += adds(np.vstack([line, point]), bend, excess, often[name])
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def adds(line: np.ndarray, bend: float, excess: float, often: float) -> bool:
+    """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
+    smooth and as short, and its paths are often free and without corners, the share given.
+    """
+    as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
+    return bool(often >= _OFTEN_FREE and not as_good.any())
+
+
+def _bends(runs: pd.DataFrame) -> np.ndarray:
+    """Return the largest curvature (n,) of each free path, infinite with corners, NaN of others."""
+    from bezierplan.analysis.results import path_of
+    from bezierplan.geometry.tightest_turn import largest_curvature
+
+    cornered = metrics.values(runs, "corners", {}) > 0
+    paths = map(path_of, runs[["path_curve", "path_points"]].to_dict("records"))
+    return np.array(
+        [
+            math.nan if not free else math.inf if sharp else largest_curvature(path)
+            for path, free, sharp in zip(paths, runs["feasible"], cornered)
+        ]
+    )
+
+
+def _lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
+    """Return the rounded shortest paths: problem, radius that is asked, x (bend) and y (excess);
+    from a sharp path to the roundest, at the same radii in all problems.
+    """
+    import pandas as pd
+
+    def point(name: str, radius: float) -> tuple[str, float, float, float]:
+        return name, radius, *_rounded(problems[name], bounds[name], radius)
+
+    names = list(problems) if wanted else []
+    rows = [point(name, math.inf) for name in names]
+    widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
+    low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high or low)) + 1)
+    ladder = [float(f"{part}e{power}") for power in decades for part in _RADII]
+    radii = [0.0, *(radius for radius in ladder if low <= radius <= high)]
+    rows += [point(*each) for each in itertools.product(names, radii)]
+    return pd.DataFrame(rows, columns=["problem", "radius", "x", "y"])
+
+
+def _rounded(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
+    """Return tightest bend and excess of the shortest path rounded by a radius, NaN without one."""
+    from bezierplan.geometry.tightest_turn import largest_curvature
+    from bezierplan.planners import rounded_shortest_path
+
+    draws = generator("trade/rounded")  # unused: the path is exact
+    plan = rounded_shortest_path.plan(problem, draws, turning_radius=radius, excess=math.inf)
+    if plan.path is None:
+        return math.nan, math.nan
+    # An arc of a tiny angle may be too short for its curvature to be measured.
+    kept = 0.0 if plan.extra["corners"] else plan.extra["least_radius"]
+    bend = max(largest_curvature(plan.path), 1 / kept) if kept else math.inf
+    return bend, plan.objective / bound - 1
+
+
+def _middle(points: np.ndarray, name: str) -> dict[str, float]:
+    """Return medians of points (n, 2) with their intervals, without those that bend without limit
+    unless all do.
+    """
+    bounded = points[np.isfinite(points[:, 0])]
+    found = {}
+    for axis, values in zip("xy", (bounded if len(bounded) else points).T):
+        numbers = np.sort(values[~np.isnan(values)])
+        middle = found[axis] = statistics.statistic("median", numbers)
+        ends = middle, middle
+        if len(numbers) > 1 and math.isfinite(middle):
+            ends = statistics.interval("median", numbers, generator(f"trade/{name}/{axis}"))
+        found[f"{axis}_low"], found[f"{axis}_high"] = ends
+    return found
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    of_bend = options.x == "bend"
+    placed, sides, edges = _with_edges(frame)
+    groups = style.groups(placed[placed["part"] == "method"], "method", options.where, scene)
+    line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
+    axes.set_xlim(sides)
+    style.measure(axes.xaxis, "log", "" if of_bend else "s")
+    top = 1.5 * np.nanmax(placed[["y", "y_high"]].to_numpy(), initial=_EQUAL)
+    axes.set_yscale("symlog", linthresh=_LINEAR)
+    axes.set_ylim(-0.1 * min(top, _LINEAR), top)
+    ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
+    axes.set_yticks(ticks, map("{:g}".format, ticks))
+    axes.minorticks_off()
+    ticks, size = [*edges], _size(axes)
+    for tick in axes.get_xticks():
+        away = [abs(math.log(tick / other)) for other in ticks] + [math.inf]
+        if sides[0] < tick < sides[1] and size[0] * min(away) > _APART * math.log(
+            sides[1] / sides[0]
+        ):
+            ticks.append(tick)
+    names = [edges.get(tick, f"{tick:g}") for tick in ticks]
+    axes.set_xticks(ticks, names if of_bend else None)
+    if len(line):
+        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
+        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
+    for _, rows, look in groups:
+        x, x_low, x_high, y, y_low, y_high = rows[_ENDS].iloc[0]
+        look |= {"linestyle": "none"}
+        axes.plot([], [], **look)
+        hollow = {"label": None}
+        if rows["free"].iloc[0] < _OFTEN_FREE:
+            hollow["markerfacecolor"] = style.FREE
+            axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
+        errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
+        axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
+    marks = [(rows.iloc[0], look["color"]) for _, rows, look in groups]
+    _write_shares(axes, marks, line[["x", "y"]].to_numpy())
+    bend = f"tightest bend (1/{scene.unit})"
+    axes.set_xlabel(bend if of_bend else axis_label("cpu_s", scene))
+    axes.set_ylabel(axis_label("gap", scene))
+    axes.grid(visible=True)
+    return _note(frame[frame["part"] == "method"], scene)
+
+
+def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
+    """Return the table with straight paths, and those that bend like corners, at the edges of a
+    logarithmic axis; the ends of the axis; and the names of edges at which something stands.
+    """
+    numbers = frame[["x", "x_low", "x_high"]].where(frame["y"].notna())
+    inside = numbers.to_numpy()[np.isfinite(numbers) & (numbers > 0)]
+    of_line = frame.loc[(frame["part"] == "line") & (frame["x"] > 0), "x"]
+    inside = inside[inside <= _RANGE * of_line.min()] if len(of_line) else inside
+    low, high = (inside.min(), inside.max()) if len(inside) else (1.0, 1.0)
+    edges = {}
+    if (numbers <= 0).any(axis=None):
+        edges[low := low / _EDGE] = "0"
+    if (numbers > high).any(axis=None):
+        edges[high := high * _EDGE] = "sharp"
+    wider = max(1.15, math.sqrt(_LEAST_SPAN * low / high))
+    return frame.assign(**numbers.clip(low, high)), [low / wider, high * wider], edges
+
+
+def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarray) -> None:
+    """Write the share of free paths beside each mark in its colour, and how many have corners,
+    where no other text or mark is, nor the line (n, 2).
+    """
+    size = _size(axes)
+    to_points = axes.transData - axes.transAxes
+
+    def spot(row: pd.Series, x: str, y: str) -> np.ndarray:
+        return to_points.transform(row[[x, y]].to_numpy(dtype=float)) * size
+
+    drawn = to_points.transform(line) * size if len(line) else line
+    ends = np.sort([drawn[:-1], drawn[1:]], axis=0)
+    taken: list[Box] = [*map(tuple, np.hstack([*ends]))]
+
+    marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
+    for row, _ in marks:
+        mark = (*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK))
+        taken += [mark] * _WORSE
+        taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
+        taken.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
+    for row, colour in marks:
+        text = f"{100 * row['free']:.0f} %"
+        if row["cornered"]:
+            text += f", corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}"
+        box = [_box(spot(row, "x", "y") + place, text, place[0] < 0) for place in _PLACES]
+        costs = [_cost(each, taken, size) for each in box]
+        best = int(np.argmin(costs))
+        taken += [box[best]] * _WORSE
+        far = abs(_PLACES[best][1]) > _LINE
+        axes.annotate(
+            text,
+            row[["x", "y"]],
+            _PLACES[best],
+            textcoords="offset points",
+            ha="right" if _PLACES[best][0] < 0 else "left",
+            va="center",
+            fontsize="x-small",
+            color=colour,
+            arrowprops={"arrowstyle": "-", "linewidth": 0.3, "color": colour} if far else None,
+        )
+
+
+def _size(axes: Axes) -> np.ndarray:
+    """Return about how wide and high the panel will be, in points."""
+    columns = axes.get_subplotspec().get_gridspec().ncols
+    width = 72 * axes.figure.get_figwidth() / columns - _MARGIN
+    return np.array([width, style.PANEL_HEIGHT * width])
+
+
+Box = tuple[float, float, float, float]
+"""Left, lower, right and upper end, in points."""
+
+
+def _box(at: np.ndarray, text: str, leftwards: bool) -> Box:
+    wide = _LETTER * len(text)
+    left = at[0] - wide if leftwards else at[0]
+    return left, at[1] - _LINE / 2, left + wide, at[1] + _LINE / 2
+
+
+def _cost(box: Box, taken: list[Box], size: np.ndarray) -> int:
+    """Return how many other boxes a text covers; to leave the panel is worse."""
+    left, low, right, high = box
+    leaves = left < 0 or low < 0 or right > size[0] or high > size[1]
+    return 99 * leaves + sum(
+        a < right and left < c and b < high and low < d for a, b, c, d in taken
+    )
+
+
+def _note(own: pd.DataFrame, scene: Any) -> Note:
+    """Say what the panel shows, and which methods add something."""
+    several = bool(own["problems"].max() > 1)
+    said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
+    said.append("beside each mark the share of paths that are free")
+    if none := [*own["method"][own["free"] == 0]]:
+        said.append(f"no free path: {_listed(none, scene)}")
+    if "adds" in own and own["adds"].notna().any():
+        adding = own[own["adds"] > 0]
+        fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
+        where = fields if several else itertools.repeat("")
+        said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
+    return Note("", "; ".join(said))
+
+
+def _listed(methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")) -> str:
+    printed = (naming.printed(method, "method", scene.labels) for method in methods)
+    return ", ".join(name + beside for name, beside in zip(printed, more))
