@@ -30,6 +30,8 @@ NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
 """How messages begin that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
+SPENT: list[float] = []
+"""The CPU seconds of Snakemake and all jobs, which the workflow tells at its end."""
 MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
 """What is counted at the end, by the end of a file of it."""
 BETWEEN_LINES = 15.0
@@ -69,7 +71,7 @@ class LogHandler(RichHandler):
             return
         done = self.event_handler.completed == self.event_handler.total_jobs
         if "Complete log" in message and done:
-            self.say(*last_lines(self.outputs, time.monotonic() - self.started))
+            self.say(*last_lines(self.outputs, time.monotonic() - self.started, *SPENT))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -113,8 +115,10 @@ class LogHandler(RichHandler):
             self.say(f"{share} %: {done} of {total} jobs, {in_hours(taken)} elapsed{left}")
 
 
-def last_lines(outputs: set[Path], seconds: float) -> list[str]:
-    """What was made, where the results are, how long it took, and last the page."""
+def last_lines(outputs: set[Path], seconds: float, *spent: float) -> list[str]:
+    """What was made, where the results are, how long it took, and last the page. spent: the CPU
+    seconds, if they are known.
+    """
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
     made = [
@@ -122,8 +126,9 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
         for what, ending in MADE.items()
         if (count := sum(file.name.endswith(ending) for file in outputs))
     ]
+    cpu = "".join(f", CPU: {each:.0f} s" for each in spent)
     lines = [f"Made: {', '.join(made)}"] if made else []
-    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}"]
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}{cpu}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []

@@ -22,7 +22,7 @@ set_kernel_target()
 from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown
-from bezierplan.running.jobs import forks
+from bezierplan.running.jobs import forks, watchdog
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
 from bezierplan.study import experiments, jobs, page, reading, stored
