@@ -86,6 +86,20 @@ def test_a_cost_is_a_multiple_of_the_fixed_work(script):
     assert 2 < frame.ratio(lambda: [frame.fixed() for _ in range(4)]) < 8
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere detached processes do not count")
+def test_work_of_processes_that_nobody_waits_for_counts(script):
+    """A process of a process, both detached, that works for three CPU seconds."""
+    frame = script("frame")
+    work = (
+        "import os, time\n"
+        "for _ in range(2):\n"
+        "    if os.fork(): os._exit(0)\n"
+        "    os.setsid()\n"
+        "while time.process_time() < 3: pass\n"
+    )
+    assert frame.cpu_seconds(lambda: frame.start("-c", work)) == pytest.approx(3, rel=0.15)
+
+
 def test_each_planner_is_run_where_a_study_uses_it(script):
     assert sorted(name for name, *_ in script("frame").first_runs()) == list_planners()
 

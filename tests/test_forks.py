@@ -199,3 +199,21 @@ time.sleep(600)
             time.sleep(0.05)
         os.kill(process.pid, signal.SIGKILL)
     assert gone(int(told.read_text()))
+
+
+def test_time_of_jobs_counts_once_their_workflow_has_ended(tmp_path):
+    (tmp_path / "start.py").write_text(
+        "from bezierplan.running.jobs.forks import Forks\n"
+        "from bezierplan.running.jobs.watchdog import measure_cpu_time\n"
+        f"forks = Forks({sys.executable!r}, open)\n"
+        "forks.end()\n"  # nothing to end
+        "work = 'import time\\nbegin = time.process_time()\\n'\n"
+        "work += 'while time.process_time() < begin + 2: pass'\n"
+        "assert forks.succeeds('works.py', work, None)\n"
+        "before = measure_cpu_time()\n"
+        "assert before < 2\n"
+        "forks.end()\n"
+        "assert measure_cpu_time() > before + 2\n"
+        "assert forks.succeeds('again.py', 'pass', None)\n"
+    )
+    subprocess.run([sys.executable, "start.py"], cwd=tmp_path, check=True)

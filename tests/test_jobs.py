@@ -113,6 +113,23 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
         assert f"{repeats[scale]} runs of each method" in told
 
 
+@pytest.mark.parametrize("key", studies())
+def test_what_shows_a_method_shows_all_that_are_judged_with_it(key):
+    own = study(key)
+    shown = [jobs.list_methods(own, name) for name in (*own.compared(), *own.figures)]
+    shown.append(jobs.build_claims(own, "full").shows)
+    for experiment in own.experiments:
+        methods = own.methods_of(experiment)
+        groups = jobs.group_methods(own, "full", experiment, methods)
+        assert sorted(name for group in groups for name in group) == sorted(methods)
+        for group in map(set, groups):
+            assert all(
+                group <= {*by[experiment]} or group.isdisjoint(by[experiment])
+                for by in shown
+                if experiment in by
+            )
+
+
 def test_the_papers_own_are_the_numbered_ones():
     for own in studies().values():
         names = own.list_names(PAPER)

@@ -75,9 +75,11 @@ def planned(tree, *words):
 
 
 def runs(number, methods=METHODS):
-    """Runs of methods, which are judged again before anything reads them."""
+    """Runs of methods, which are judged again before anything reads them; those of smooth_single
+    with smooth_quadratic's, for what shows one shows both.
+    """
     return {f"runs {method}": number for method in methods} | {
-        f"judgement {method}": 1 for method in methods
+        f"judgement {method}": 1 for method in methods if method != "smooth_single"
     }
 
 

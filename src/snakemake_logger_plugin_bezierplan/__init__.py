@@ -30,6 +30,8 @@ NOISE = ("Config file ", "Conda environments: ignored", "Elapsed time: ")
 """Beginnings of messages that tell a user nothing."""
 KNOWN: set[str] = set()
 """Names of targets, which the workflow fills in."""
+SPENT: list[float] = []
+"""The CPU seconds of Snakemake and all jobs, which the workflow tells at its end."""
 MADE = {"table": ".tex", "figure": ".svg", "page": "index.html"}
 """What is counted at the end -> the end of its file's name."""
 BETWEEN_LINES = 15.0
@@ -72,7 +74,7 @@ class LogHandler(RichHandler):
             return
         done = self.event_handler.completed == self.event_handler.total_jobs
         if "Complete log" in message and done:
-            self.say(*list_last_lines(self.outputs, time.monotonic() - self.started))
+            self.say(*list_last_lines(self.outputs, time.monotonic() - self.started, *SPENT))
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -121,9 +123,11 @@ class LogHandler(RichHandler):
             self.say(f"{share} %: {done} of {total} jobs, {format_duration(taken)} elapsed{left}")
 
 
-def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
+def list_last_lines(outputs: set[Path], seconds: float, *spent: float) -> list[str]:
     """Return the lines at the end: what was made, where the results are, the time, and last the
     page.
+
+    spent: the CPU seconds, if they are known.
     """
     results = [file.parts for file in outputs if file.parts[0] == "results"]
     folders = {"/".join(parts[:-1][:3]) for parts in results if len(parts) > 2}
@@ -132,10 +136,9 @@ def list_last_lines(outputs: set[Path], seconds: float) -> list[str]:
         for what, ending in MADE.items()
         if (count := sum(file.name.endswith(ending) for file in outputs))
     ]
+    cpu = "".join(f", CPU: {each:.0f} s" for each in spent)
     lines = [f"Made: {', '.join(made)}"] if made else []
-    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {format_duration(seconds)}"]
-    figures = sorted(file for file in outputs if file.suffix == ".svg")
-    lines += [f"Figure: {figures[0]}"] if len(figures) == 1 else []
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}{cpu}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         said = re.search(r'<p class="headline">(.*?)</p>', page.read_text(encoding="utf-8"))
         lines += [said[1]] if said else []

@@ -1,9 +1,11 @@
 """CPU time, and what is timed: runs of the studies' methods."""
 
 import json
-import resource
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ import numpy as np
 from bezierplan.places import STUDIES
 from bezierplan.planners import Plan, load_planner
 from bezierplan.running import execution, problems
+from bezierplan.running.jobs.watchdog import measure_cpu_time
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
 from bezierplan.workspaces.problem import Problem
@@ -22,18 +25,22 @@ LEAST, LONG = 0.02, 0.8
 one is measured once, after one that warms caches.
 """
 ROUNDS = 4
+COUNTED = Path(__file__).with_name("counted.py")
 
 
 def cpu_seconds(work: Work) -> float:
-    """CPU seconds of this process and of those that it has started and waited for."""
-    before = _spent()
+    """CPU seconds of this process and of those that it has started and waited for; of a command
+    that `start` runs, of all its descendants.
+    """
+    before = measure_cpu_time()
     work()
-    return _spent() - before
+    return measure_cpu_time() - before
 
 
-def _spent() -> float:
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(each.ru_utime + each.ru_stime for each in used)
+def start(*command: str | Path, folder: str | Path = ".") -> None:
+    """Run a command of Python in a folder, and wait for all that it has started."""
+    words = [sys.executable, COUNTED, sys.executable, *command]
+    subprocess.run(words, cwd=folder, capture_output=True, check=True)
 
 
 def fixed() -> None:

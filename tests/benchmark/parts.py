@@ -1,7 +1,5 @@
 """What `make benchmark` measures: names, and the works behind them."""
 
-import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -52,9 +50,8 @@ def short() -> Works:
 
 def _start(words: list[str]) -> None:
     """A command, started in an empty folder, where there are no results."""
-    command = [sys.executable, "-m", "bezierplan", *words]
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(command, cwd=folder, capture_output=True, check=True)
+        frame.start("-m", "bezierplan", *words, folder=folder)
 
 
 def _run(job: Any, study: str, *outputs: str) -> None:

@@ -22,7 +22,7 @@ set_kernel_target()
 from snakemake.cli import get_argument_parser
 
 from bezierplan.analysis import markdown
-from bezierplan.running.jobs import forks
+from bezierplan.running.jobs import forks, watchdog
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
 from bezierplan.study import captions, experiments, jobs, page, reading, stored
@@ -104,6 +104,19 @@ def under(key, folder):
 def home(place, scale, experiment, method=""):
     """Where the problems of an experiment are, or the runs of a method, for the study at a place."""
     return stored.find_home(PLACES, place, scale, experiment, method)
+
+
+@cache
+def judged_with(place, scale, experiment, method):
+    """The methods whose runs, made at a place, are judged together with those of a method."""
+    study = PLACES[place]
+    own = [
+        name
+        for name in study.methods_of(experiment)
+        if home(place, method=name, scale=scale, experiment=experiment) == place
+    ]
+    groups = jobs.group_methods(study, scale, experiment, own)
+    return next(group for group in groups if method in group)
 
 
 def one_of(names):
@@ -202,6 +215,18 @@ def of(make, **more):
     return lambda wildcards: build(make, {**dict(wildcards), **more})
 
 
+@cache
+def judgement_of(scale, study, experiment, method):
+    """The job that judges runs."""
+    methods = judged_with(study, scale, experiment, method)
+    return jobs.build_judgement(PLACES[study], scale, experiment, methods)
+
+
+def judgement(wildcards):
+    """The same for the wildcards of its rule."""
+    return judgement_of(**dict(wildcards))
+
+
 KINDS = {
     "runs": f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
     "times": f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
@@ -210,7 +235,7 @@ KINDS = {
     "problems": f"{RESULTS}/problems/{{experiment}}.parquet",
     "bounds": f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
 }
-"""Results by kind: files of each experiment, each of its methods, or each chunk of runs."""
+"""Results by kind: files of each experiment, some of its methods, or each chunk of runs."""
 
 
 def results(job, *kinds):
@@ -240,12 +265,11 @@ def files_read(job, kind, wildcards):
         chunks = [(method, n) for method in methods for n in range(methods[method])]
         # Problems have no methods.
         of_runs = chunks if "{method}" in KINDS[kind] else [("", 0)]
-        found += [
-            KINDS[kind].format(
-                **place, study=home(study, method=method, **place), method=method, chunk=n
-            )
-            for method, n in of_runs
-        ]
+        for method, n in of_runs:
+            own = home(study, method=method, **place)
+            if kind == "judgements":
+                method = judged_with(own, method=method, **place)[0]
+            found.append(KINDS[kind].format(**place, study=own, method=method, chunk=n))
     return [*dict.fromkeys(found)]
 
 

@@ -76,10 +76,11 @@ use rule runs as drives with:
         study=studies_with(MOVING),
 
 
-# Nothing reads runs that were not judged again from their rows, in a process that no planner was in.
+# Nothing reads runs that were not judged again from their rows, in a process that no planner was in:
+# one job for all methods that are shown together.
 rule judgement:
     input:
-        unpack(results(of(jobs.build_judgement), "runs", "problems")),
+        unpack(results(judgement, "runs", "problems")),
     output:
         f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
     log:
@@ -90,6 +91,6 @@ rule judgement:
     resources:
         runtime=more(10),
     params:
-        **params(jobs.build_judgement),
+        **params_of(judgement),
     script:
         "../scripts/job.py"

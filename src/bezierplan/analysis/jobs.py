@@ -158,7 +158,7 @@ class Runs(Job):
 
 @dataclass(frozen=True)
 class Recheck(Job):
-    """The runs of a method in an experiment, judged again from their rows, in a process that no
+    """The runs of some methods in an experiment, judged again from their rows, in a process that no
     planner was in, before anything reads them.
     """
 

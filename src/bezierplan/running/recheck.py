@@ -168,7 +168,9 @@ def judge(task: StoredRuns) -> RunsVerdict:
         by_name, moving = _read_problems(task.problems)
     except ValueError as error:
         return RunsVerdict((describe_error(task.problems, error),), len(task.runs))
-    faults, lines, files = [], [], {}
+    faults, lines, runs = [], [], 0
+    # By method, so that what is counted does not depend on which methods are judged together.
+    known: dict[str, dict[tuple, dict[str, tuple[Any, float]]]] = {}
     for file, chunk in task.runs.items():
         try:
             table = rows.read(file)
@@ -184,26 +186,24 @@ def judge(task: StoredRuns) -> RunsVerdict:
         elif fault := rows.find_fault(table.schema, *declared):
             faults.append(describe_error(file, rows.describe_misplaced(file, fault)))
         else:
-            files[file] = table.to_pylist()
-            of_file = [*_find_identity_faults(file, files[file], chunk)]
+            stored = table.to_pylist()
+            of_file = [*_find_identity_faults(file, stored, chunk)]
             # A changed experiment explains all differences, so only its file is named.
             if of_file and task.other_settings:
                 what = f"experiment {chunk.experiment} is another one than that of these runs"
                 of_file = [Difference(task.other_settings, f"{what}: {File(file).parents[1]}")]
-            elif not of_file and not {row["problem"] for row in files[file]} <= by_name.keys():
+            elif not of_file and not {row["problem"] for row in stored} <= by_name.keys():
                 of_file = [Difference(task.problems, "not of the problems that the runs are of")]
-            if of_file:
-                del files[file]
             faults += of_file
-    known: dict[tuple, dict[str, tuple[Any, float]]] = {}
-    for file, stored in files.items():
-        for row in stored:
-            faults += _find_row_faults(file, row, by_name[row["problem"]], moving, known)
+            for row in [] if of_file else stored:
+                cache = known.setdefault(chunk.method, {})
+                faults += _find_row_faults(file, row, by_name[row["problem"]], moving, cache)
+                runs += 1
     return RunsVerdict(
         tuple(dict.fromkeys(faults)),
         len(task.runs),
-        sum(map(len, files.values())),
-        len(known),
+        runs,
+        sum(map(len, known.values())),
         tuple(lines),
     )
 

@@ -130,13 +130,36 @@ def build_runs(study: Study, scale: str, experiment: str, method: str, chunk: st
     return Runs(build_chunk(study, experiment, method, scale, int(chunk)))
 
 
-def build_judgement(study: Study, scale: str, experiment: str, method: str) -> Recheck:
-    """Build the job that judges the runs of all chunks of a method again."""
-    numbers = list_chunks(study, experiment, method, scale)
+def build_judgement(study: Study, scale: str, experiment: str, methods: Iterable[str]) -> Recheck:
+    """Build the job that judges the runs of all chunks of some methods again."""
+    numbers = count_chunks(study, experiment, methods, scale)
     return Recheck(
-        [build_chunk(study, experiment, method, scale, number) for number in numbers],
-        shows={experiment: {method: len(numbers)}},
+        [
+            build_chunk(study, experiment, method, scale, number)
+            for method in numbers
+            for number in range(numbers[method])
+        ],
+        shows={experiment: numbers},
     )
+
+
+def group_methods(
+    study: Study, scale: str, experiment: str, methods: Iterable[str]
+) -> list[list[str]]:
+    """Group the methods of an experiment that the same tables, figures and claims show. One job
+    judges a group, whose file lies with the first, so that nothing waits for runs which it does not
+    need.
+    """
+    shown = [list_methods(study, name) for name in (*study.find_tables_of_runs(), *study.figures)]
+    claims = [claim for claim in study.claims if claim.scale in (None, scale)]
+    if experiment in alternatives.list_experiments(claims):
+        shown.append({experiment: list(study.experiments[experiment].methods)})
+    groups: dict[tuple, list[str]] = {}
+    for method in methods:
+        users = [n for n, by in enumerate(shown) if method in by.get(experiment, ())]
+        alone = method if method in study.baselines else ""
+        groups.setdefault((alone, *users), []).append(method)
+    return [*groups.values()]
 
 
 # --------------------------------------------------------------------------------------------------

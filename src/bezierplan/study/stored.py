@@ -92,16 +92,19 @@ def _yield_results(
         if find_home(places, own_place, scale, name) == own_place:
             yield jobs.build_problems(study, scale, name), [f"problems/{name}.parquet"]
             yield jobs.build_bounds(study, scale, name), [f"problems/{name}.bounds.parquet"]
-        for method in study.methods_of(name):
-            if find_home(places, own_place, scale, name, method) != own_place:
-                continue
-            folder = f"runs/{name}/{method}"
-            # Times are apart from runs, because they cannot be reproduced.
-            ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
-            for number in jobs.list_chunks(study, name, method, scale):
-                files = [f"{folder}/{number}{end}.parquet" for end in ends]
-                yield jobs.build_runs(study, scale, name, method, str(number)), files
-            yield jobs.build_judgement(study, scale, name, method), [f"{folder}/judgement.json"]
+        ends = ("", ".times", ".traces") if study.moves(name) else ("", ".times")
+        own = [
+            method
+            for method in study.methods_of(name)
+            if find_home(places, own_place, scale, name, method) == own_place
+        ]
+        for group in jobs.group_methods(study, scale, name, own):
+            for method in group:
+                for number in jobs.list_chunks(study, name, method, scale):
+                    files = [f"runs/{name}/{method}/{number}{end}.parquet" for end in ends]
+                    yield jobs.build_runs(study, scale, name, method, str(number)), files
+            judgement = jobs.build_judgement(study, scale, name, group)
+            yield judgement, [f"runs/{name}/{group[0]}/judgement.json"]
 
 
 def _yield_artefacts(study: Study, scale: str) -> Iterator[Made]:

@@ -72,7 +72,12 @@ class Forks:
         self._script = script
         self._names = inspect.signature(script)
         self._starting, self._control = threading.Lock(), None
-        self.process: int | None = None  # the number of the process that is forked
+        self._process: subprocess.Popen | None = None
+
+    @property
+    def process(self) -> int | None:
+        """The number of the process that is forked; None before the first."""
+        return self._process and self._process.pid
 
     def start(self) -> None:
         """Start the process that is forked, unless it runs. It imports modules while Snakemake has
@@ -81,6 +86,17 @@ class Forks:
         with self._starting:
             if self._control is None:
                 self._begin()
+
+    def end(self) -> None:
+        """End the process that is forked, if it is there, and wait for it: its time and that of all
+        jobs then count as that of this process's children.
+        """
+        with self._starting:
+            if self._control is not None:
+                self._control.close()
+                self._process.kill()
+                self._process.wait()
+                self._control = None
 
     def script(self, *arguments: Any) -> None:
         """Run a script as Snakemake's function of the same name does, with the same arguments.
@@ -165,13 +181,13 @@ class Forks:
         """Start the process that is forked."""
         self._control, theirs = socket.socketpair()
         with theirs:
-            self.process = subprocess.Popen(
+            self._process = subprocess.Popen(
                 [self._interpreter, "-m", __name__],
                 stdin=theirs,
                 stdout=choose_stream(sys.stdout),
                 stderr=choose_stream(sys.stderr),
                 env=os.environ | ONE_THREAD,
-            ).pid
+            )
 
 
 def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
