@@ -16,7 +16,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import captions, jobs, page, reading
+from bezierplan.study import captions, jobs, page, reading, runs_behind
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -116,7 +116,9 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
 @pytest.mark.parametrize("key", studies())
 def test_what_shows_a_method_shows_all_that_are_judged_with_it(key):
     own = study(key)
-    shown = [jobs.list_methods(own, name) for name in (*own.compared(), *own.figures)]
+    shown = [
+        runs_behind.list_methods(own, name) for name in (*own.find_tables_of_runs(), *own.figures)
+    ]
     shown.append(jobs.build_claims(own, "full").shows)
     for experiment in own.experiments:
         methods = own.methods_of(experiment)

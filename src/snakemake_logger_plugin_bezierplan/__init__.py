@@ -138,7 +138,7 @@ def list_last_lines(outputs: set[Path], seconds: float, *spent: float) -> list[s
     ]
     cpu = "".join(f", CPU: {each:.0f} s" for each in spent)
     lines = [f"Made: {', '.join(made)}"] if made else []
-    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {in_hours(seconds)}{cpu}"]
+    lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {format_duration(seconds)}{cpu}"]
     for page in sorted(file for file in outputs if file.name == "index.html"):
         said = re.search(r'<p class="headline">(.*?)</p>', page.read_text(encoding="utf-8"))
         lines += [said[1]] if said else []
