@@ -52,7 +52,7 @@ def content() -> tuple[SimpleNamespace, Path]:
         whole = page_jobs.build_page(studies, scale)
         study_code.functions(whole.code)  # what a study's metrics mean
         page = build.page(
-            whole.page._replace(stored=[*studies]),
+            whole.page._replace(outcome=[*studies]),
             folder,
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*map(reader.read, EVIDENCE)),

@@ -101,7 +101,7 @@ def main() -> None:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
 
-def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts.Answer]:
+def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts.FilledText]:
     """Return the answer to each paper from the tables of a folder. files: by study, if any."""
     return {
         key: texts.fill(texts.read(file), texts.read_tables(folder, key))
@@ -131,7 +131,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
 
 def paper(
     title: str,
-    answer: texts.Answer,
+    answer: texts.FilledText,
     claims: pd.DataFrame,
     folder: Path,
     tables: Mapping[str, tuple[str, int]],

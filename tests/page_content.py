@@ -146,7 +146,7 @@ def job() -> PageJob:
         changes=[],
         answer=("One fails", HOSTILE),
     )
-    return PageJob("smoke", {"one": study}, stored=[])
+    return PageJob("smoke", {"one": study}, outcome=[])
 
 
 def page(folder: Path) -> SimpleNamespace:

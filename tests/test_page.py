@@ -145,7 +145,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     (file,) = (folder / "one").rglob("table1.wholes.csv")
     columns = reader.read(file).assign(study="one", table="table1")
     evidence = reader.Evidence(numbers, claims, nothing, nothing, columns)
-    own = reader.studies(job()._replace(stored=["one"]), folder, None, evidence)["one"]
+    own = reader.studies(job()._replace(outcome=["one"]), folder, None, evidence)["one"]
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.families is None

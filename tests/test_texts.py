@@ -81,7 +81,7 @@ def test_numbers_come_from_facts_and_texts_are_short(ma2020):
     typed = "text: {} is typed; expected a fact in braces"
     assert faults(ma2020, "Of 12 lengths 3.5 fit.") == [typed.format("12"), typed.format("3.5")]
     assert faults(ma2020, "Table 1, environment 2, CPSO-2 and Figure 3 are names.") == []
-    assert faults(ma2020, "In {short.kept} of {short.rows}.") == []
+    assert faults(ma2020, "In {short.holds} of {short.rows}.") == []
     assert "expected a fact that has it" in faults(ma2020, "In {other}.")[0]
     assert faults(ma2020, "word " * 61) == ["text: 61 words; expected at most 60"]
     assert faults(ma2020, title="word " * 9) == ["title: 9 words; expected at most 8"]

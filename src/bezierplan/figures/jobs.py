@@ -149,7 +149,7 @@ class Page(Job):
             folder,
             list(input_files.summary),
             input_files.verified,
-            reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.stored else None,
+            reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.outcome else None,
             results=inputs.group_by_experiment(self.shows, input_files),
         )
         Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")

@@ -170,7 +170,7 @@ def judge(task: StoredRuns) -> RunsVerdict:
         return RunsVerdict((describe_error(task.problems, error),), len(task.runs))
     faults, lines, runs = [], [], 0
     # By method, so that what is counted does not depend on which methods are judged together.
-    known: dict[str, dict[tuple, dict[str, tuple[Any, float]]]] = {}
+    by_method: dict[str, dict[tuple, dict[str, tuple[Any, float]]]] = {}
     for file, chunk in task.runs.items():
         try:
             table = rows.read(file)
@@ -196,14 +196,14 @@ def judge(task: StoredRuns) -> RunsVerdict:
                 of_file = [Difference(task.problems, "not of the problems that the runs are of")]
             faults += of_file
             for row in [] if of_file else stored:
-                cache = known.setdefault(chunk.method, {})
+                cache = by_method.setdefault(chunk.method, {})
                 faults += _find_row_faults(file, row, by_name[row["problem"]], moving, cache)
                 runs += 1
     return RunsVerdict(
         tuple(dict.fromkeys(faults)),
         len(task.runs),
         runs,
-        sum(map(len, known.values())),
+        sum(map(len, by_method.values())),
         tuple(lines),
     )
 

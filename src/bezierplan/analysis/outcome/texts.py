@@ -27,7 +27,7 @@ TABLES = (
 
 # A number that a person typed; those of tables, figures and maps are names.
 _TYPED = re.compile(r"(?<![\w.-])(?!(?<=Table )|(?<=Figure )|(?<=environment ))\d[\d.,]*")
-_VALUE = re.compile(r"\{(\w+)(?:\.(low|high|kept|rows))?\}")
+_VALUE = re.compile(r"\{(\w+)(?:\.(low|high|holds|rows))?\}")
 
 
 class Fact(Model):
@@ -41,7 +41,7 @@ class Fact(Model):
     equals: Any = Field(None, description="a value, or the name of a column")
     above: Any = Field(None, description="a number, or the name of a column")
     below: Any = Field(None, description="a number, or the name of a column")
-    kept: int = Field(None, description="in how many rows it must hold; left out: in all")
+    holds: int = Field(None, description="in how many rows it must hold; left out: in all")
     percent: bool = Field(False, description="true to show a share in per cent")
     digits: int = Field(2, description="significant digits that are shown; left out: 2")
     turned_by: list[str] = Field(
@@ -60,12 +60,12 @@ class Text(Model):
 
     title: str = Field(description="at most eight words that answer")
     text: str = Field(
-        description="at most 60 words; in braces the value of a fact, or its low, high, kept, rows"
+        description="at most 60 words; in braces the value of a fact, or its low, high, holds, rows"
     )
     facts: dict[str, Fact] = Field(description="by name")
 
 
-class Answer(NamedTuple):
+class FilledText(NamedTuple):
     """A title and a text whose numbers are filled in, and what is wrong with its facts."""
 
     title: str
@@ -78,15 +78,15 @@ def read(file: str | Path) -> Text:
     return parse(Text, checked.read(Path(file)), str(file))
 
 
-def fill(text: Text, tables: Mapping[str, pd.DataFrame]) -> Answer:
+def fill(text: Text, tables: Mapping[str, pd.DataFrame]) -> FilledText:
     """Fill the values of facts into a text, and check the facts.
 
     tables: the rows of the study, by the names in `TABLES`. Raises Fault for an unknown column.
     """
     faults, values = [], {}
     for name, fact in text.facts.items():
-        found, values[name] = _find(fact, tables)
-        faults += [f"{name}: {fault}" for fault in found]
+        of_fact, values[name] = _find(fact, tables)
+        faults += [f"{name}: {fault}" for fault in of_fact]
     for name, most in WORDS.items():
         written = getattr(text, name)
         if (count := len(re.findall(r"[\w{][^\s]*", written))) > most:
@@ -94,14 +94,14 @@ def fill(text: Text, tables: Mapping[str, pd.DataFrame]) -> Answer:
         typed = _TYPED.findall(_VALUE.sub("", written))
         faults += [f"{name}: {number} is typed; expected a fact in braces" for number in typed]
 
-    def value(found: re.Match) -> str:
-        known = values.get(found[1], {})
-        if (part := found[2] or "value") not in known:
-            faults.append(f"text: {found[0]}: expected a fact that has it")
-        return known.get(part, found[0])
+    def value(braces: re.Match) -> str:
+        known = values.get(braces[1], {})
+        if (part := braces[2] or "value") not in known:
+            faults.append(f"text: {braces[0]}: expected a fact that has it")
+        return known.get(part, braces[0])
 
     shown = " ".join(_VALUE.sub(value, text.text).split())
-    return Answer(text.title, shown, faults)
+    return FilledText(text.title, shown, faults)
 
 
 def _find(fact: Fact, tables: Mapping[str, pd.DataFrame]) -> tuple[list[str], dict[str, str]]:
@@ -114,18 +114,18 @@ def _find(fact: Fact, tables: Mapping[str, pd.DataFrame]) -> tuple[list[str], di
     side = getattr(fact, word)
     # A word is a column if the table has it.
     side = rows[side] if isinstance(side, str) and side in rows else side
-    held = COMPARISONS[word](values, side)
+    true = COMPARISONS[word](values, side)
     if len(rows) != fact.rows:
         faults.append(f"finds {len(rows)} rows; expected {fact.rows}")
     if fact.each and rows.duplicated(fact.each).any():
         faults.append(f"several rows have the same {', '.join(fact.each)}")
-    wanted = fact.rows if fact.kept is None else fact.kept
-    if held.sum() != wanted:
-        faults.append(f"holds in {held.sum()} of {len(rows)} rows; expected {wanted}")
+    wanted = fact.rows if fact.holds is None else fact.holds
+    if true.sum() != wanted:
+        faults.append(f"holds in {true.sum()} of {len(rows)} rows; expected {wanted}")
     if "conditions" in rows and (pooled := rows["conditions"] > 1).any():
         faults.append(f"a row pools {rows['conditions'][pooled].iloc[0]:.0f} conditions")
     faults += _compare_readings(fact, rows, tables["claims_by_reading"])
-    return faults, _show(fact, values, held)
+    return faults, _show(fact, values, true)
 
 
 def _compare_readings(fact: Fact, rows: pd.DataFrame, by_reading: pd.DataFrame) -> list[str]:
@@ -145,9 +145,9 @@ def _compare_readings(fact: Fact, rows: pd.DataFrame, by_reading: pd.DataFrame) 
     return [f"turned by the readings {', '.join(turned.index) or 'none'}"]
 
 
-def _show(fact: Fact, values: pd.Series, held: pd.Series) -> dict[str, str]:
+def _show(fact: Fact, values: pd.Series, true: pd.Series) -> dict[str, str]:
     """Return how a text shows the values of a fact."""
-    shown = {"kept": str(held.sum()), "rows": str(len(values))}
+    shown = {"holds": str(true.sum()), "rows": str(len(values))}
     if len(values) == 1:
         shown["value"] = str(values.iloc[0])
     if len(values) and pd.api.types.is_numeric_dtype(values):

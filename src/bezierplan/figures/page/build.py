@@ -64,7 +64,7 @@ def page(
         scale=job.scale,
         about_scale=answer.about_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else made_by(),
-        headline=_headline(_replace(tables, evidence, job.stored), job.studies),
+        headline=_headline(_replace(tables, evidence, job.outcome), job.studies),
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -79,15 +79,15 @@ def page(
 
 
 def _replace(
-    tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, stored: list[str]
+    tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, studies: list[str]
 ) -> list[pd.DataFrame] | None:
     """Return numbers, claims and methods of all studies, those of the evidence in place of the
-    scale's own.
+    scale's own for some studies.
     """
     if not evidence:
         return tables
-    many = evidence.of(stored)[: len(tables or evidence)]
-    own = [table[~table["study"].isin(stored)] for table in tables or []]
+    many = evidence.of(studies)[: len(tables or evidence)]
+    own = [table[~table["study"].isin(studies)] for table in tables or []]
     return [pd.concat(both, ignore_index=True) for both in zip(many, own)] if own else [*many]
 
 

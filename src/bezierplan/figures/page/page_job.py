@@ -77,5 +77,5 @@ class PageJob(NamedTuple):
 
     scale: str
     studies: dict[str, StudyView]
-    stored: list[str]
+    outcome: list[str]
     """Studies of whose settings the project keeps the outcome of many runs."""

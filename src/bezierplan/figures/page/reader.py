@@ -68,30 +68,28 @@ def studies(
     """
     numbers, _, measured = summary or [None] * 3
     pages = {}
-    for key, described in job.studies.items():
-        files = {name: read(folder / key / FILES[name]) for name in described.files}
-        substitute = evidence.of([key]) if evidence and key in job.stored else None
+    for key, view in job.studies.items():
+        files = {name: read(folder / key / FILES[name]) for name in view.files}
+        substitute = evidence.of([key]) if evidence and key in job.outcome else None
         if substitute:
             files |= {"claims": substitute.claims, "checks": substitute.checks}
-        claims = _claims(key, described, files)
+        claims = _claims(key, view, files)
         counted = of_study(numbers, key)
         own_tables = [
-            _table(key, name, each, folder, described.labels, counted, substitute)
-            for name, each in described.tables.items()
+            _table(key, name, each, folder, view.labels, counted, substitute)
+            for name, each in view.tables.items()
         ]
         of_problems = substitute.methods if substitute else of_study(measured, key)
         pages[key] = SimpleNamespace(
             key=key,
-            job=described,
+            job=view,
             claims=claims,
             tables=own_tables,
-            figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
-            methods=[_method(key, name, each) for name, each in described.methods.items()],
-            assumptions=[
-                _assumption(key, each, described.labels) for each in described.assumptions
-            ],
+            figures=[_figure(key, name, each, folder) for name, each in view.figures.items()],
+            methods=[_method(key, name, each) for name, each in view.methods.items()],
+            assumptions=[_assumption(key, each, view.labels) for each in view.assumptions],
             audit=records(files.get("audit", pd.DataFrame())),
-            families=_families(of_problems, described.labels),
+            families=_families(of_problems, view.labels),
             shown=[],
         )
     return pages

@@ -48,23 +48,13 @@ _LINEAR = 0.01
 _TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
 
 # How far from all others, as a factor, bends at the edges stand; what the axis spans at least; and
-# how far apart its ticks are, in points.
-_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 30.0
+# how far apart its ticks are, as a share of it.
+_EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 0.15
 
 _ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
 
-# Where a share stands beside its mark, in points: the nearest place that is free. Sizes of its
-# letters and of a mark, and of a panel, on one sheet of two columns, without what stands beside it.
-_PLACES = [
-    (side * near, high)
-    for near, rise in ((5, 0), (5, 7), (9, 14), (14, 21), (30, 12), (20, 28), (40, 24))
-    for high in dict.fromkeys((rise, -rise))
-    for side in (1, -1)
-]
-_LETTER, _LINE, _MARK, _MARGIN = 3.3, 7.0, 2.5, 40.0
-
-# How many lines it had rather cover than one mark or text.
-_WORSE = 3
+# Where a text stands beside its mark, in points.
+_BESIDE = (5, 5)
 
 
 class Options(RunsPanel):
@@ -99,19 +89,22 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         {"part": "line", "radius": radius} | _middle(own[["x", "y"]].to_numpy(), f"{radius}")
         for radius, own in lines.groupby("radius")
     ]
-    for method, own in runs.groupby("method"):
+    for method, of_method in runs.groupby("method"):
         places = {
             name: _middle(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
-            for name, few in own.groupby("problem")
+            for name, few in of_method.groupby("problem")
         }
         medians = np.array([[place["x"], place["y"]] for place in places.values()])
-        row = {"part": "method", "method": method, "problems": len(places)} | counts(own)
-        row |= {"free": own["feasible"].mean(), "cornered": int(np.isposinf(own["x"]).sum())}
+        row = {"part": "method", "method": method, "problems": len(places)} | counts(of_method)
+        row |= {
+            "free": of_method["feasible"].mean(),
+            "cornered": int(np.isposinf(of_method["x"]).sum()),
+        }
         row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
         row |= next(iter(places.values())) if len(places) == 1 else {}
-        if of_bend and own["planner"].iloc[0] != _BASELINE:
-            round_paths = np.isfinite(own["x"])
-            often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
+        if of_bend and of_method["planner"].iloc[0] != _BASELINE:
+            round_paths = np.isfinite(of_method["x"])
+            often = round_paths.groupby(of_method["problem"]).mean().clip(upper=round_paths.mean())
             row["adds"] = 0
             end = "_low" if len(places) == 1 else ""
             for name, place in places.items():
@@ -188,15 +181,15 @@ def _middle(points: np.ndarray, name: str) -> dict[str, float]:
     unless all do.
     """
     bounded = points[np.isfinite(points[:, 0])]
-    found = {}
+    middle_of = {}
     for axis, values in zip("xy", (bounded if len(bounded) else points).T):
         numbers = np.sort(values[~np.isnan(values)])
-        middle = found[axis] = statistics.statistic("median", numbers)
+        middle = middle_of[axis] = statistics.statistic("median", numbers)
         ends = middle, middle
         if len(numbers) > 1 and math.isfinite(middle):
             ends = statistics.interval("median", numbers, generator(f"trade/{name}/{axis}"))
-        found[f"{axis}_low"], found[f"{axis}_high"] = ends
-    return found
+        middle_of[f"{axis}_low"], middle_of[f"{axis}_high"] = ends
+    return middle_of
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -212,12 +205,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
     axes.set_yticks(ticks, map("{:g}".format, ticks))
     axes.minorticks_off()
-    ticks, size = [*edges], _size(axes)
+    ticks, span = [*edges], math.log(sides[1] / sides[0])
     for tick in axes.get_xticks():
-        away = [abs(math.log(tick / other)) for other in ticks] + [math.inf]
-        if sides[0] < tick < sides[1] and size[0] * min(away) > _APART * math.log(
-            sides[1] / sides[0]
-        ):
+        away = min((abs(math.log(tick / other)) for other in ticks), default=math.inf)
+        if sides[0] < tick < sides[1] and away > _APART * span:
             ticks.append(tick)
     names = [edges.get(tick, f"{tick:g}") for tick in ticks]
     axes.set_xticks(ticks, names if of_bend else None)
@@ -235,8 +226,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
         errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
         axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
-    marks = [(rows.iloc[0], look["color"]) for _, rows, look in groups]
-    _write_shares(axes, marks, line[["x", "y"]].to_numpy())
+        text, colour = _describe_paths(rows.iloc[0]), look["color"]
+        if math.isfinite(x) and math.isfinite(y):
+            axes.annotate(
+                text, (x, y), _BESIDE, textcoords="offset points", fontsize="x-small", color=colour
+            )
     bend = f"tightest bend (1/{scene.unit})"
     axes.set_xlabel(bend if of_bend else axis_label("cpu_s", scene))
     axes.set_ylabel(axis_label("gap", scene))
@@ -262,83 +256,23 @@ def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[fl
     return frame.assign(**numbers.clip(low, high)), [low / wider, high * wider], edges
 
 
-def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarray) -> None:
-    """Write the share of free paths beside each mark in its colour, and how many have corners,
-    where no other text or mark is, nor the line (n, 2).
-    """
-    size = _size(axes)
-    to_points = axes.transData - axes.transAxes
-
-    def spot(row: pd.Series, x: str, y: str) -> np.ndarray:
-        return to_points.transform(row[[x, y]].to_numpy(dtype=float)) * size
-
-    drawn = to_points.transform(line) * size if len(line) else line
-    ends = np.sort([drawn[:-1], drawn[1:]], axis=0)
-    taken: list[Box] = [*map(tuple, np.hstack([*ends]))]
-
-    marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
-    for row, _ in marks:
-        mark = (*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK))
-        taken += [mark] * _WORSE
-        taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
-        taken.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
-    for row, colour in marks:
-        text = f"{100 * row['free']:.0f} %"
-        if row["cornered"]:
-            text += f", corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}"
-        box = [_box(spot(row, "x", "y") + place, text, place[0] < 0) for place in _PLACES]
-        costs = [_cost(each, taken, size) for each in box]
-        best = int(np.argmin(costs))
-        taken += [box[best]] * _WORSE
-        far = abs(_PLACES[best][1]) > _LINE
-        axes.annotate(
-            text,
-            row[["x", "y"]],
-            _PLACES[best],
-            textcoords="offset points",
-            ha="right" if _PLACES[best][0] < 0 else "left",
-            va="center",
-            fontsize="x-small",
-            color=colour,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.3, "color": colour} if far else None,
-        )
+def _describe_paths(row: pd.Series) -> str:
+    """Return the share of free paths, if some are not, and how many of these have corners."""
+    free = f"{100 * row['free']:.0f} %" if row["free"] < 1 else ""
+    some = row["cornered"] > 0
+    corners = f"corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}" if some else ""
+    return ", ".join(filter(None, [free, corners]))
 
 
-def _size(axes: Axes) -> np.ndarray:
-    """Return about how wide and high the panel will be, in points."""
-    columns = axes.get_subplotspec().get_gridspec().ncols
-    width = 72 * axes.figure.get_figwidth() / columns - _MARGIN
-    return np.array([width, style.PANEL_HEIGHT * width])
-
-
-Box = tuple[float, float, float, float]
-"""Left, lower, right and upper end, in points."""
-
-
-def _box(at: np.ndarray, text: str, leftwards: bool) -> Box:
-    wide = _LETTER * len(text)
-    left = at[0] - wide if leftwards else at[0]
-    return left, at[1] - _LINE / 2, left + wide, at[1] + _LINE / 2
-
-
-def _cost(box: Box, taken: list[Box], size: np.ndarray) -> int:
-    """Return how many other boxes a text covers; to leave the panel is worse."""
-    left, low, right, high = box
-    leaves = left < 0 or low < 0 or right > size[0] or high > size[1]
-    return 99 * leaves + sum(
-        a < right and left < c and b < high and low < d for a, b, c, d in taken
-    )
-
-
-def _note(own: pd.DataFrame, scene: Any) -> Note:
+def _note(table: pd.DataFrame, scene: Any) -> Note:
     """Say what the panel shows, and which methods add something."""
-    several = bool(own["problems"].max() > 1)
+    several = bool(table["problems"].max() > 1)
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
-    said.append("beside each mark the share of paths that are free")
-    if none := [*own["method"][own["free"] == 0]]:
+    said.append("beside a mark the share of paths that are free, where not all are")
+    if none := [*table["method"][table["free"] == 0]]:
         said.append(f"no free path: {_listed(none, scene)}")
-    if "adds" in own and own["adds"].notna().any():
-        adding = own[own["adds"] > 0]
+    if "adds" in table and table["adds"].notna().any():
+        adding = table[table["adds"] > 0]
         fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
         where = fields if several else itertools.repeat("")
         said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
