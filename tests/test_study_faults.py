@@ -7,7 +7,7 @@ import pytest
 
 from bezierplan.__main__ import main
 from bezierplan.schema import checked
-from bezierplan.study import reading
+from bezierplan.study import checks, reading
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
@@ -27,15 +27,19 @@ def copy(study, folder):
     return Path(shutil.copytree(home / study, folder / study))
 
 
-def told(folder):
-    """What loading a study tells: one line that can be printed, and that is no longer than a
-    screen.
+def faults(folder):
+    """The faults that loading a study tells: lines that can be printed, and that are no longer than
+    a screen.
     """
     with pytest.raises(checked.Fault) as caught:
         reading.load([folder])
-    assert str(caught.value).isprintable()
-    assert len(str(caught.value)) < 1600
-    return str(caught.value)
+    assert all(line.isprintable() and len(line) < 1600 for line in caught.value.lines)
+    return caught.value.lines
+
+
+def told(folder):
+    """The first of them."""
+    return faults(folder)[0]
 
 
 @pytest.mark.parametrize("name", FAULTS)
@@ -107,9 +111,34 @@ def test_a_fault_is_told_without_what_follows_from_it(file, old, new, tmp_path):
     text = (folder / file).read_text()
     assert old in text
     (folder / file).write_text(text.replace(old, new, 1))
-    with pytest.raises(checked.Fault) as caught:
-        reading.load([folder])
-    assert len(caught.value.lines) == 1
+    assert len(faults(folder)) == 1
+
+
+PROBLEMS = """problems:
+  inn: {workspace: rom, start_cell: 0, target_cell: 63}
+  out: {workspace: rom, start_cell: 63, target_cell: 0}
+  far: {workspace: room, start: [0.5, 0.5], target: [99, 7.5]}
+  off: {workspace: room, start: [1.5, 0.5], target: [99, 7.5]}"""
+TABLE = """: {title: Again, kind: pivot, experiment: first, index: [method], columns: [value],
+    values: [{metric: lenght, statistic: median, label: length, decimals: 2}]}"""
+
+
+def test_equal_faults_of_several_entries_and_what_fails_after_them_are_all_told(
+    tmp_path, monkeypatch
+):
+    folder = copy("walks", tmp_path)
+    for name, key, more in (
+        ("experiments.yaml", "problems:", PROBLEMS),
+        ("artefacts.yaml", "tables:", f"tables:\n  one{TABLE}\n  two{TABLE}"),
+    ):
+        text = (folder / name).read_text()
+        (folder / name).write_text(text.replace(key, more, 1))
+    monkeypatch.setattr(checks.Checks, "check_labels", lambda self: 1 / 0)
+    lines = faults(folder)
+    for part in ("workspace: rom: unknown", "target: [99, 7.5]: outside", "metric: lenght"):
+        assert sum(part in line for line in lines) == 2
+    assert "ZeroDivisionError" in lines[6]
+    assert len(lines) == 7
 
 
 def test_studies_for_tests_have_no_fault():

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field, create_model
 
@@ -49,6 +49,12 @@ performed, so a setting of that name adds nothing.
 """
 
 
+class Follows(Exception):
+    """A fault that follows from one that is told already, so that no line tells it."""
+
+    lines: ClassVar[list[str]] = []
+
+
 class Checks:
     """Check a study whose files are each valid on their own. The methods raise Fault without the
     place, which `at` adds.
@@ -58,8 +64,8 @@ class Checks:
 
     def __init__(self, study: Study, invalid: Iterable[str] = ()) -> None:
         self.study, self.invalid = study, {*invalid}
-        self.faults = []
-        self.words = {"generation"}
+        self.faults: dict[str, tuple[str, ...]] = {}
+        self.words, self.broken_files = {"generation"}, set()
         self._place = ()
         self.design = cache(lambda experiment: build_design(self.study, experiment))
         self.runs = cache(self._join_runs)
@@ -92,15 +98,22 @@ class Checks:
         try:
             yield
         except Exception as error:
-            # What is no fault is of a study's own code, or follows from a fault found before.
-            known = isinstance(error, ValueError)
+            fault = isinstance(error, ValueError)
             for line in getattr(
-                error, "lines", [str(error) if known else describe_in_one_line(error)]
+                error, "lines", [str(error) if fault else describe_in_one_line(error)]
             ):
-                found = any(each.endswith(line) for each in self.faults)
-                if not (found if known else self.faults or self.invalid):
-                    self.faults.append(": ".join([*self._place, line]))
-                self.invalid.update(self._place[2:3])
+                told = [place for each, place in self.faults.items() if each.endswith(line)]
+                if fault:
+                    # Equal words follow from the first, unless they are about another entry of its
+                    # section.
+                    here = self._place
+                    follows = any(at[:2] != here[:2] or at[:3] == here[:3] for at in told)
+                else:
+                    # Our own code fails like this where an entry is missing that is left out.
+                    follows = bool(told) or not self.invalid.isdisjoint(map(str, error.args))
+                if not follows:
+                    self.faults[": ".join([*self._place, line])] = self._place
+            self.invalid.update(self._place[2:3])
         finally:
             self._place = outer
 
@@ -158,7 +171,8 @@ class Checks:
             self.check_entries("figures", study.figures, self.check_figure)
             self.check_labels()
         with self.at(shorten_path(study.folder / "layout.yaml")):
-            check_all(study.layout, {**study.tables, **study.figures}, "layout")
+            sound = [name for name in study.layout if name not in self.invalid]
+            check_all(sound, {**study.tables, **study.figures}, "layout")
         for file, section, entries, work in (
             ("claims", "claims", [(e.id, e) for e in study.claims], self.check_claim),
             (
@@ -185,7 +199,7 @@ class Checks:
             check_all(study.fitted.keys() - self.invalid, study.find_published_tables(), "table")
             for table, fitted in study.fitted.items():
                 check_all(fitted, [each.metric for each in study.tables[table].values], table)
-        return self.faults
+        return [*self.faults]
 
     # experiments.yaml
 
@@ -196,13 +210,17 @@ class Checks:
         self.check_names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
+            if method.planner in self.broken_files:
+                raise Follows
             check_inside(self.study.folder, method.planner, location)
+            self.broken_files.add(method.planner)
         else:
             check_known(method.planner, list_planners(), "planner", f"{method.planner}.py")
         module = interface.load_planner_module(self.study.planner(name), location)
         extra = getattr(module, "extra", ())
         for taken in RESERVED.intersection([*read_settings(module), *extra]):
             raise Fault(f"{location}: its {taken} is a column of results; give it another name")
+        self.broken_files.discard(method.planner)
         interface.refuse_unknown(module, method.settings, "settings")
         if (
             method.policy
@@ -242,7 +260,14 @@ class Checks:
         own = [each.problems for each in study.assumptions if each.id in study.values]
         for problem in {"", *itertools.chain.from_iterable(own)}:
             settings = study.resolve_settings(name) | study.find_changed_settings(name, problem)
-            interface.check_settings(load_planner(study.planner(name)), settings, "settings")
+            try:
+                interface.check_settings(load_planner(study.planner(name)), settings, "settings")
+            except Fault as fault:
+                # Methods share most settings, and a wrong one of all is told once.
+                own = any(f": {key}: " in str(fault) for key in study.methods[name].settings)
+                if not own and any(each.endswith(str(fault)) for each in self.faults):
+                    raise Follows from None
+                raise
 
     def check_workspace(self, name: str, workspace: Workspace) -> None:
         """Check that a workspace's map can be read."""
@@ -490,6 +515,8 @@ class Checks:
         experiments = {name: None for check in claim.checks for name in check.experiments}
         for column, entries in claim.variants.items():
             for value in (each for entry in entries for each in convert_to_list(entry)):
+                if value in self.invalid:
+                    continue
                 if column in ("metric", "experiment"):
                     known = {"metric": metrics.METRICS, "experiment": self.study.experiments}
                     check_known(value, known[column], f"variants: {column}")
@@ -523,6 +550,8 @@ class Checks:
         self.check_names(assumption)
         study = self.study
         for name, key in assumption.workspace.items():
+            if name in self.invalid:
+                continue
             check_known(name, study.workspaces, "workspace")
             workspace = study.workspaces[name]
             check_known(key, workspace.plain(), f"workspace: {name}")
@@ -541,6 +570,8 @@ class Checks:
             used = self.known["setting"] - {assumption.setting}
             check_known(assumption.setting, used, "setting")
         for method, settings in assumption.along.items():
+            if method in self.invalid:
+                continue
             check_known(method, methods, "with")
             check_all(settings, study.read_accepted_settings(method), f"with: {method}")
         for value in assumption.alternatives:
