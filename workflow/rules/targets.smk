@@ -58,7 +58,7 @@ for study in STUDIES:
             name:
                 f"{study}_{item}"
             input:
-                files_alone(STUDIES[study], item),
+                lambda _, study=study, item=item: files_alone(STUDIES[study], item),
 
 
 # Our logger, if it is the one in use, tells the nearest name of a mistyped one.
