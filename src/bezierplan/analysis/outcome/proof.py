@@ -25,6 +25,7 @@ _RULES = (
     "unprinted_table",
     "listing",
     "latex",
+    "caption",
     "figure",
     "claims",
     "claims_of_reading",
