@@ -99,19 +99,19 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         {"part": "line", "radius": radius} | _middle(own[["x", "y"]].to_numpy(), f"{radius}")
         for radius, own in lines.groupby("radius")
     ]
-    for method, own in runs.groupby("method"):
+    for method, group in runs.groupby("method"):
         places = {
             name: _middle(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
-            for name, few in own.groupby("problem")
+            for name, few in group.groupby("problem")
         }
         medians = np.array([[place["x"], place["y"]] for place in places.values()])
-        row = {"part": "method", "method": method, "problems": len(places)} | counts(own)
-        row |= {"free": own["feasible"].mean(), "cornered": int(np.isposinf(own["x"]).sum())}
+        row = {"part": "method", "method": method, "problems": len(places)} | counts(group)
+        row |= {"free": group["feasible"].mean(), "cornered": int(np.isposinf(group["x"]).sum())}
         row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
         row |= next(iter(places.values())) if len(places) == 1 else {}
-        if of_bend and own["planner"].iloc[0] != _BASELINE:
-            round_paths = np.isfinite(own["x"])
-            often = round_paths.groupby(own["problem"]).mean().clip(upper=round_paths.mean())
+        if of_bend and group["planner"].iloc[0] != _BASELINE:
+            round_paths = np.isfinite(group["x"])
+            often = round_paths.groupby(group["problem"]).mean().clip(upper=round_paths.mean())
             row["adds"] = 0
             end = "_low" if len(places) == 1 else ""
             for name, place in places.items():
@@ -188,15 +188,15 @@ def _middle(points: np.ndarray, name: str) -> dict[str, float]:
     unless all do.
     """
     bounded = points[np.isfinite(points[:, 0])]
-    found = {}
+    medians = {}
     for axis, values in zip("xy", (bounded if len(bounded) else points).T):
         numbers = np.sort(values[~np.isnan(values)])
-        middle = found[axis] = statistics.statistic("median", numbers)
+        middle = medians[axis] = statistics.statistic("median", numbers)
         ends = middle, middle
         if len(numbers) > 1 and math.isfinite(middle):
             ends = statistics.interval("median", numbers, generator(f"trade/{name}/{axis}"))
-        found[f"{axis}_low"], found[f"{axis}_high"] = ends
-    return found
+        medians[f"{axis}_low"], medians[f"{axis}_high"] = ends
+    return medians
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -274,22 +274,22 @@ def _write_shares(axes: Axes, marks: list[tuple[pd.Series, str]], line: np.ndarr
 
     drawn = to_points.transform(line) * size if len(line) else line
     ends = np.sort([drawn[:-1], drawn[1:]], axis=0)
-    taken: list[Box] = [*map(tuple, np.hstack([*ends]))]
+    boxes: list[Box] = [*map(tuple, np.hstack([*ends]))]
 
     marks = [mark for mark in marks if not mark[0][["x", "y"]].isna().any()]
     for row, _ in marks:
         mark = (*(spot(row, "x", "y") - _MARK), *(spot(row, "x", "y") + _MARK))
-        taken += [mark] * _WORSE
-        taken.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
-        taken.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
+        boxes += [mark] * _WORSE
+        boxes.append((*spot(row, "x_low", "y"), *spot(row, "x_high", "y")))
+        boxes.append((*spot(row, "x", "y_low"), *spot(row, "x", "y_high")))
     for row, colour in marks:
         text = f"{100 * row['free']:.0f} %"
         if row["cornered"]:
             text += f", corners, {row['cornered']:.0f} of {row['feasible_runs']:.0f}"
         box = [_box(spot(row, "x", "y") + place, text, place[0] < 0) for place in _PLACES]
-        costs = [_cost(each, taken, size) for each in box]
+        costs = [_cost(each, boxes, size) for each in box]
         best = int(np.argmin(costs))
-        taken += [box[best]] * _WORSE
+        boxes += [box[best]] * _WORSE
         far = abs(_PLACES[best][1]) > _LINE
         axes.annotate(
             text,
@@ -321,24 +321,24 @@ def _box(at: np.ndarray, text: str, leftwards: bool) -> Box:
     return left, at[1] - _LINE / 2, left + wide, at[1] + _LINE / 2
 
 
-def _cost(box: Box, taken: list[Box], size: np.ndarray) -> int:
+def _cost(box: Box, boxes: list[Box], size: np.ndarray) -> int:
     """Return how many other boxes a text covers; to leave the panel is worse."""
     left, low, right, high = box
     leaves = left < 0 or low < 0 or right > size[0] or high > size[1]
     return 99 * leaves + sum(
-        a < right and left < c and b < high and low < d for a, b, c, d in taken
+        a < right and left < c and b < high and low < d for a, b, c, d in boxes
     )
 
 
-def _note(own: pd.DataFrame, scene: Any) -> Note:
+def _note(methods: pd.DataFrame, scene: Any) -> Note:
     """Say what the panel shows, and which methods add something."""
-    several = bool(own["problems"].max() > 1)
+    several = bool(methods["problems"].max() > 1)
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside each mark the share of paths that are free")
-    if none := [*own["method"][own["free"] == 0]]:
+    if none := [*methods["method"][methods["free"] == 0]]:
         said.append(f"no free path: {_listed(none, scene)}")
-    if "adds" in own and own["adds"].notna().any():
-        adding = own[own["adds"] > 0]
+    if "adds" in methods and methods["adds"].notna().any():
+        adding = methods[methods["adds"] > 0]
         fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
         where = fields if several else itertools.repeat("")
         said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
