@@ -71,7 +71,7 @@ wheel: .venv/ready-dev ## a wheel for pip, into dist
 image: ## an image for Docker with the workflow and its environment, named bezierplan
 	docker build --tag bezierplan .
 
-benchmark: .venv/ready ## what starts, planners, bounds, claims and page cost, compared with docs/benchmark.csv (ARGS: store, grown)
+benchmark: .venv/ready ## what starts, kernels, planners, figures and the rest cost, compared with docs/benchmark.csv (ARGS: store, grown)
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke
 	$(RUN) tests/benchmark/run.py $(ARGS)

@@ -3,6 +3,7 @@
 import importlib
 import math
 import sys
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -37,9 +38,8 @@ def benchmark(script, monkeypatch, tmp_path, capsys):
     pd.Series(STORED, name="ratio").rename_axis("cost").to_csv(run.STORED)
 
     def measure(costs, *words):
-        works = {name: iter(times) for name, times in costs.items()}
-        monkeypatch.setattr(run.parts, "short", lambda: works.items())
-        monkeypatch.setattr(run.frame, "ratio", next)
+        measures = {name: partial(next, iter(times)) for name, times in costs.items()}
+        monkeypatch.setattr(run.parts, "short", lambda: measures.items())
         status = run.main([*words])
         return status, capsys.readouterr().out.splitlines()[len(costs) :]
 
@@ -100,8 +100,28 @@ def test_work_of_processes_that_nobody_waits_for_counts(script):
     assert frame.cpu_seconds(lambda: frame.start("-c", work)) == pytest.approx(3, rel=0.15)
 
 
+def test_a_part_that_takes_three_times_as_long_is_named_and_no_other(script):
+    run = script("run")
+    stored = {name: 1.0 for name, _ in run.parts.short()}
+    for part in (
+        "start",
+        "compiling",
+        "planner",
+        "bound",
+        "drives",
+        "judgement",
+        "table",
+        "figure",
+    ):
+        planted = next(name for name in stored if name.startswith(f"{part}: "))
+        lines, failed = run.judged(stored | {planted: 3.0}, stored)
+        assert failed
+        assert lines == [f"{planted}: 3.00 times as long as stored"]
+
+
 def test_each_planner_is_run_where_a_study_uses_it(script):
-    assert sorted(name for name, *_ in script("frame").first_runs()) == list_planners()
+    places = script("frame").first_places()
+    assert sorted({own.planner(method) for own, _, method in places}) == list_planners()
 
 
 def test_what_grows(script):

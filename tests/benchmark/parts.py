@@ -1,7 +1,7 @@
 """What `make benchmark` measures: names, and the works behind them."""
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,51 +11,124 @@ import frame
 import numpy as np
 import yaml
 
-from bezierplan.geometry import shortest_paths
+from bezierplan.geometry import region, shortest_paths
 from bezierplan.places import TREE
-from bezierplan.running.guard import interface
 from bezierplan.study import jobs, page
+from bezierplan.study.definition import Study
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
-Works = Iterator[tuple[str, frame.Work]]
+Costs = Iterator[tuple[str, frame.Measure]]
 SMOKE = TREE / "results" / "smoke"
-CLAIMS = "song2016"
-"""The study whose claims are judged: those of all would take too long."""
+COMPILED = {
+    "modified_genetic": ("elhoseny2017", "fields100", "mga"),
+    "chaotic_pso": ("tharwat2018", "maps", "pso"),
+}
+"""Planners that are compiled from nothing, with a run of each: those of all would take minutes."""
+BOUNDS = {
+    "circles": ("tharwat2018", "maps", "pso"),
+    "grid": ("ma2020", "environments", "bca"),
+    "polygons": ("elhoseny2017", "maps_polygons", "mga"),
+}
+DRIVES = {
+    "meledje": ("from_current", ["proposed_drives", "shortest_drives"]),
+    "tharwat2018": ("moving", ["swarm_warm"]),
+}
+JUDGED = {"meledje": "from_current", "song2016": "routes", "tharwat2018": "maps"}
+TABLES = {"ma2020": "table1", "tharwat2018": "table3"}
+FIGURES = {
+    "elhoseny2017": "figure10",
+    "ma2020": "figure4",
+    "meledje": "figure1",
+    "song2016": "figure4",
+    "tharwat2018": "figure8",
+}
+CLAIMS = ("song2016", "ma2020")
+"""The studies whose claims are judged: those of all would take too long."""
 GROWN = "growth: "
 """How the names of costs begin that are measured on demand."""
 
 
-def short() -> Works:
-    """What is measured each time, in less than a minute."""
+def short() -> Costs:
+    """What is measured each time, in some minutes."""
     for name, words in {
         "list": ["list"],
         "dry run of one figure": ["run", "-n", "song2016_figure4"],
         "dry run": ["run", "-n"],
     }.items():
-        yield f"start: {name}", partial(_start, words)
-    kinds = {}
-    for planner, problem, work in frame.first_runs():
-        yield f"planner: {planner}", work
-        kinds.setdefault(interface.KINDS[type(problem.workspace)], problem)
-    for kind, problem in kinds.items():
-        yield f"bound: {kind}", partial(shortest_paths.shortest_path, problem)
+        yield _timed(f"start: {name}", _start, words)
+    yield "most memory, in MB: dry run", partial(_most_memory, ["run", "-n"])
+    for planner, place in COMPILED.items():
+        yield f"compiling: {planner}", partial(frame.ratio, partial(_compile, place), cold=True)
+    for own, experiment, method in frame.first_places():
+        _, work = frame.first_run(own, experiment, method)
+        yield _timed(f"planner: {own.planner(method)} ({own.key}/{experiment}/{method})", work)
     studies = {study.key: study for study in frame.studies()}
-    claims = jobs.build_claims(studies[CLAIMS], "smoke")
-    yield f"claims: {CLAIMS}", partial(_run, claims, CLAIMS, "claims", "checks")
-    yield "page", partial(_run, page.build_page(studies, "smoke", root=""), "", "page")
+    for kind, (key, *place) in BOUNDS.items():
+        problem, _ = frame.first_run(studies[key], *place)
+        yield _timed(f"bound: {kind}", _bound, problem)
+    for key, (experiment, methods) in DRIVES.items():
+        for method in methods:
+            work = frame.first_drive(studies[key], experiment, method)
+            yield _timed(f"drives: {key}/{experiment}/{method}", work)
+    yield from _of_results(studies)
 
 
-def _start(words: list[str]) -> None:
-    """A command, started in an empty folder, where there are no results."""
+def _of_results(studies: Mapping[str, Study]) -> Costs:
+    """What judges and shows the results of scale smoke."""
+    for key, experiment in JUDGED.items():
+        methods = studies[key].experiments[experiment].methods
+        job = jobs.build_judgement(studies[key], "smoke", experiment, methods)
+        yield _timed(f"judgement: {key}/{experiment}", _run, job, key)
+    for key, table in TABLES.items():
+        job = jobs.build_table_of_runs(studies[key], "smoke", table)
+        outputs = ("table", "published", "wholes", "comparison")
+        yield _timed(f"table: {key}/{table}", _run, job, key, *outputs)
+    for key, figure in FIGURES.items():
+        drawn = jobs.build_figure(studies[key], "smoke", figure)
+        outputs = ("svg", "png", "pdf", "caption", "data")
+        yield _timed(f"figure: {key}/{figure}", _run, drawn, key, *outputs)
+    for key in CLAIMS:
+        claims = jobs.build_claims(studies[key], "smoke")
+        yield _timed(f"claims: {key}", _run, claims, key, "claims", "checks")
+    yield _timed("page", _run, page.build_page(studies, "smoke", root=""), "", "page")
+
+
+def _timed(name: str, work: Callable[..., object], *of: object) -> tuple[str, frame.Measure]:
+    """The name of a cost, and what measures it: the CPU time of a work."""
+    return name, partial(frame.ratio, partial(work, *of))
+
+
+def _start(words: list[str]) -> int:
+    """A command, started in an empty folder, where there are no results; the most memory that it
+    had, in bytes.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        frame.start("-m", "bezierplan", *words, folder=folder)
+        return frame.start("-m", "bezierplan", *words, folder=folder)
+
+
+def _most_memory(words: list[str]) -> float:
+    return _start(words) / 1e6
+
+
+def _compile(place: tuple[str, str, str]) -> None:
+    """A run, where no kernel has been compiled."""
+    with tempfile.TemporaryDirectory() as folder:
+        frame.start(frame.__file__, *place, XDG_CACHE_HOME=folder)
+
+
+def _bound(problem: Problem) -> None:
+    """The exact shortest path, in a room that is as good as new."""
+    region.build_region.cache_clear()
+    shortest_paths.shortest_path(problem)
 
 
 def _run(job: Any, study: str, *outputs: str) -> None:
-    """A job on the results of scale smoke, which writes elsewhere."""
+    """A job on the results of scale smoke, which writes elsewhere. outputs: names of its files;
+    none if it has one without.
+    """
     places = [(SMOKE / Path(study, name).parent, Path(name).name) for name in job.shows]
     given = SimpleNamespace(
         problems=[f"{home}/problems/{name}.parquet" for home, name in places],
@@ -67,30 +140,34 @@ def _run(job: Any, study: str, *outputs: str) -> None:
             for number in range(chunks)
         ],
         sources=job.sources,
+        alternatives=[],
         summary=[SMOKE / f"{name}.csv" for name in ("numbers", "claims", "methods")],
         verified=SMOKE / "verified.json",
     )
     with tempfile.TemporaryDirectory() as folder:
-        job.run(given, SimpleNamespace(**{name: f"{folder}/{name}" for name in outputs}))
+        files = {name: f"{folder}/{name}" for name in outputs}
+        job.run(given, SimpleNamespace(**files) if files else [f"{folder}/file"])
 
 
 # --------------------------------------------------------------------------------------------------
 # How cost grows
 
 
-def grown() -> Works:
+def grown() -> Costs:
     """With obstacles, cells, methods and runs."""
     for kind, draw in (("circles", _discs), ("squares", _squares)):
         for side in (16, 32, 63):
-            work = partial(shortest_paths.shortest_path, _across(_room(side, draw), side))
-            yield f"{GROWN}bound among {side**2:,} {kind}", work
+            problem = _across(_room(side, draw), side)
+            yield _timed(f"{GROWN}bound among {side**2:,} {kind}", _bound, problem)
     for side in (250, 500, 1000):
-        work = partial(shortest_paths.shortest_path, _across(_blocks(side), side))
-        yield f"{GROWN}bound on {side:,} x {side:,} cells", work
+        problem = _across(_blocks(side), side)
+        yield _timed(f"{GROWN}bound on {side:,} x {side:,} cells", _bound, problem)
     for methods in (30, 100, 300):
-        yield f"{GROWN}dry run of {methods} methods", partial(_study, methods, 10, "-n")
+        yield _timed(f"{GROWN}dry run of {methods} methods", _study, methods, 10, "-n")
     for runs in (1_000, 10_000, 100_000):
-        yield f"{GROWN}a study of {runs:,} runs", partial(_study, 1, runs)
+        # Its kernels are there, since its planner was measured.
+        measure = partial(frame.ratio, partial(_study, 1, runs), cold=True)
+        yield f"{GROWN}a study of {runs:,} runs", measure
 
 
 def _across(workspace: Workspace, side: int) -> Problem:

@@ -1,37 +1,41 @@
-"""What starts, planners, bounds, claims and the page cost.
+"""What starts, compiling, planners, bounds, drives, judgement, tables, figures, claims and the page
+cost.
 
 `make benchmark` measures it and compares it with docs/benchmark.csv, which `make benchmark
 ARGS=store` writes anew, at each release; `ARGS="grown store"` with how cost grows. Costs are CPU
 times, each as a multiple of that of a fixed piece of work beside it (`frame.fixed`), so that
-machines compare. A cost above `NAMED` times the stored one in three measurements is named; above
-`FAILS` times, the status is 1.
+machines compare; that of memory is in MB. A cost above `NAMED` times the stored one in three
+measurements is named; above `FAILS` times, the status is 1.
 """
 
 import sys
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
-import frame
-import pandas as pd
-import parts
+from bezierplan.places import TREE, set_kernel_target
 
-from bezierplan.places import TREE
+set_kernel_target()
+
+import frame  # noqa: E402
+import pandas as pd  # noqa: E402
+import parts  # noqa: E402
 
 STORED, MADE = TREE / "docs" / "benchmark.csv", TREE / "results" / "benchmark.csv"
 NAMED, FAILS = 1.25, 2.0
 
 
 def measured(
-    works: Iterable[tuple[str, frame.Work]], stored: Mapping[str, float]
+    costs: Iterable[tuple[str, frame.Measure]], stored: Mapping[str, float]
 ) -> Iterator[tuple[str, float]]:
     """Names and costs; what seems slower than the stored cost is measured twice more."""
-    for name, work in works:
-        cost = frame.ratio(work)
+    for name, measure in costs:
+        cost = measure()
         for _ in range(2):
             if cost > NAMED * stored.get(name, cost):
-                cost = min(cost, frame.ratio(work))
+                cost = min(cost, measure())
         print(f"  {name:55}{cost:12.4g}", flush=True)
         yield name, cost
 
@@ -54,8 +58,8 @@ def main(words: list[str]) -> int:
         else pd.Series(dtype=float)
     )
     compared = {} if "store" in words else known.to_dict()
-    works = [*parts.short(), *(parts.grown() if "grown" in words else ())]
-    costs = dict(measured(works, compared))
+    parts_of = chain(parts.short(), parts.grown() if "grown" in words else ())
+    costs = dict(measured(parts_of, compared))
     lines, failed = judged(costs, compared)
     file = STORED if "store" in words else MADE
     # What was not measured this time stays.
