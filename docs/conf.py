@@ -49,7 +49,7 @@ html_theme_options = {
 }
 html_context = {
     "default_mode": "auto",
-    "made_by": build.made_by(),
+    "made_by": build.describe_version(),
     "licence": content.citations()[0]["license"],
 }
 templates_path = ["templates"]

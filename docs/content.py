@@ -50,7 +50,7 @@ def content() -> tuple[SimpleNamespace, Path]:
     with contextlib.chdir(ROOT):
         studies = read_studies()
         whole = page_jobs.build_page(studies, scale)
-        study_code.functions(whole.code)  # what a study's metrics mean
+        study_code.load_functions(whole.code)  # what a study's metrics mean
         page = build.page(
             whole.page._replace(outcome=[*studies]),
             folder,

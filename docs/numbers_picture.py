@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezierplan.analysis.outcome.headline import deviations
+from bezierplan.analysis.outcome.headline import compute_deviations
 from bezierplan.figures import style
 
 FAR = 3.0
@@ -76,7 +76,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             study, table = place
             told = own[~own["wide"].astype(bool)]
             inside = int((told["position"] == "inside").sum())
-            off = 100 * np.median(deviations(own))
+            off = 100 * np.median(compute_deviations(own))
             _write(axes, -0.03, middle, table.replace("table", "Table "), "right")
             _write(axes, 1.04, middle, f"{inside} of {len(told)}" if len(told) else "–", "left")
             _write(axes, 1.2 if wide else 1.4, middle, f"{off:.2g} %", "left")

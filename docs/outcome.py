@@ -15,7 +15,7 @@ import numbers_picture
 import pandas as pd
 
 from bezierplan.analysis import naming
-from bezierplan.analysis.markdown import table_text
+from bezierplan.analysis.markdown import write_table
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
@@ -149,7 +149,7 @@ def paper(
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
-        table_text(main.rename(columns=heads).set_index("claim")),
+        write_table(main.rename(columns=heads).set_index("claim")),
         MORE.format(folder.name),
         LAID,
     ]
@@ -157,7 +157,7 @@ def paper(
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         laid = _beside(ours, numbers.dropna(subset="table_row"), heads)
-        parts += [f"## {naming.heading(name)}: {table_title}", table_text(laid)]
+        parts += [f"## {naming.format_heading(name)}: {table_title}", write_table(laid)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -179,11 +179,11 @@ def identified(folder: Path, studies: Mapping[str, Study]) -> str:
         if not rules or (rows := rows[rows["rule"].str.startswith(rules)]).empty:
             continue
         rows = rows.assign(
-            item=rows["item"].map(naming.heading), place=rows["place"].replace(study.labels)
+            item=rows["item"].map(naming.format_heading), place=rows["place"].replace(study.labels)
         )
         names = {"item": "in", "printed": "printed", "limit": "ours", "arithmetic": "paths"}
         shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
-        parts += [f"## {name_of(key)}", table_text(shown.astype(str).set_index("in"))]
+        parts += [f"## {name_of(key)}", write_table(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
 
 
@@ -192,7 +192,7 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
     cells = ours.iloc[:, heads:].to_numpy()
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        text = comparison.beside(number) or f"ours {cells[place]}"
+        text = comparison.describe_range(number) or f"ours {cells[place]}"
         cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
@@ -208,9 +208,9 @@ def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
         f"- **[{name_of(key)}]({KEPT}/{key}.md): {title}.** {text}"
         for key, title, text in answers.itertuples(index=False)
     )
-    said = f"{headline.sentence_of_numbers(numbers)} {headline.sentence_of_claims(claims)}"
+    said = f"{headline.describe_numbers(numbers)} {headline.describe_claims(claims)}"
     parts = [
-        f"**{OPEN} {headline.sentence_of_methods(of_problems)}**",
+        f"**{OPEN} {headline.describe_methods(of_problems)}**",
         listed,
         PICTURE,
         f"*{said} {RANGE}*",
@@ -221,14 +221,14 @@ def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
 
 def methods_by_family(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
     """Return the table of the papers' methods, and what its columns mean. labels: by study."""
-    rows = methods.of_families(of_problems)
+    rows = methods.group_by_family(of_problems)
     named = {
         f"{study}/{name}": f"{name_of(study)}, {label}"
         for study, own in labels.items()
         for name, label in own.items()
     }
-    laid = methods.laid_out(rows[rows["proposed"].astype(bool)], named)
-    return f"{table_text(laid)}\n\n*{GENTLY}*"
+    laid = methods.format_table(rows[rows["proposed"].astype(bool)], named)
+    return f"{write_table(laid)}\n\n*{GENTLY}*"
 
 
 def name_of(key: str) -> str:

@@ -47,7 +47,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     ],
     "claims": [
         ("A claim", Claim),
-        ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
+        ("A **check** has `test`, its kind, and by kind", kinds.list_kinds()),
     ],
     "assumptions": [
         ("The file", claims.AssumptionsFile),

@@ -3,9 +3,9 @@
 from typing import Any
 
 from bezierplan.analysis.claims.check import ClaimCheck
-from bezierplan.analysis.claims.kinds import kinds
+from bezierplan.analysis.claims.kinds import list_kinds
 
 
 def check_of(values: dict[str, Any]) -> ClaimCheck:
     """The check."""
-    return kinds()[values["test"]].model_validate(values)
+    return list_kinds()[values["test"]].model_validate(values)

@@ -39,7 +39,7 @@ from hypothesis import configuration, settings  # noqa: E402
 from bezierplan.analysis import study_code  # noqa: E402
 
 # Tests of metrics need those of the papers, without their studies.
-study_code.functions(
+study_code.load_functions(
     f"bezierplan.papers.{file.parent.name}.metrics"
     for file in (ROOT / "src/bezierplan/papers").glob("*/metrics.py")
 )

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from studies import studies
 
-from bezierplan.analysis.run_tables import run_tables, table_digest
+from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems
 from bezierplan.running.columns import DriveTimes, Times
@@ -57,9 +57,9 @@ def find(scale: str) -> Digests:
         parts |= scenarios(study) if scale == "smoke" else results(folder / key)
         found |= {(key, *name): digest(part) for name, part in parts.items()}
     if scale != "smoke":
-        for name, chunks in run_tables(folder).items():
+        for name, chunks in list_run_tables(folder).items():
             key, _, table = name.partition("/")
-            found[key, "runs", table] = table_digest(chunks)
+            found[key, "runs", table] = compute_table_digest(chunks)
     return found
 
 

@@ -51,7 +51,7 @@ def arguments(key: str, function: str) -> dict[str, Any]:
 def drawing(key: str, name: str) -> pd.DataFrame:
     """The marks of a drawing of a study, from its file."""
     file = FOLDER / key / "published" / f"{name}.csv"
-    return drawings.marks({name: results.published_table(file)})
+    return drawings.list_marks({name: results.read_published_table(file)})
 
 
 def built(study: Study, experiment: str, name: str) -> Problem:

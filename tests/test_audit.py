@@ -33,7 +33,7 @@ def spec(columns=(), picks=(), monotone=()):
 
 
 def audited(*rows, n=10, **keys):
-    return audit.of_any_paper({"table1": table(*rows, n=n)}, {"table1": spec(**keys)})
+    return audit.check_any_paper({"table1": table(*rows, n=n)}, {"table1": spec(**keys)})
 
 
 def marks(rows, word):
@@ -101,9 +101,9 @@ def test_fewer_runs_than_printed_can_spread_more():
 @given(st.lists(st.integers(0, 20), min_size=2, max_size=30))
 def test_two_ends_limit_the_standard_deviation_further(values):
     mean = possible.Printed(Fraction(sum(values), len(values)), Fraction(0))
-    limit = possible.std_of_mean(mean, len(values), Fraction(0), Fraction(20))
+    limit = possible.compute_largest_std(mean, len(values), Fraction(0), Fraction(20))
     assert np.std(values, ddof=1) <= limit * (1 + 1e-12)
-    assert limit <= possible.std_of_mean(mean, len(values), Fraction(0), None) * (1 + 1e-12)
+    assert limit <= possible.compute_largest_std(mean, len(values), Fraction(0), None) * (1 + 1e-12)
 
 
 def test_counts_are_whole_and_not_above_the_runs():
@@ -168,7 +168,7 @@ def test_ranks_are_added_within_the_columns_of_a_table():
     numbers = table(*rows)
     numbers.insert(0, "problem", ["p", "p", "q", "q"])
     for columns, sums in ((["problem"], [True, True]), ([], [False])):
-        assert marks(audit.of_ranks("table1", numbers, columns), "add to") == sums
+        assert marks(audit.check_ranks("table1", numbers, columns), "add to") == sums
 
 
 # Orders
@@ -189,8 +189,11 @@ def test_an_order_that_must_be_kept():
         direction="up",
         because="it is said",
     )
-    assert [row["consistent"] for row in audit.of_orders("table1", numbers, rule)] == [True, True]
-    (first, second) = audit.of_orders("table1", numbers, rule.but(direction="down"))
+    assert [row["consistent"] for row in audit.check_orders("table1", numbers, rule)] == [
+        True,
+        True,
+    ]
+    (first, second) = audit.check_orders("table1", numbers, rule.but(direction="down"))
     assert (first["consistent"], second["consistent"]) == (False, False)
     assert (second["place"], second["arithmetic"]) == (
         "method=a, obstacles=3, metric=length, statistic=mean",
@@ -228,15 +231,15 @@ def test_numbers_printed_twice_count_once():
         dict.fromkeys(("table1", "table2"), numbers),
         {name: spec() for name in ("table1", "table2")},
     )
-    assert marks(audit.of_any_paper(both, specs), "equally likely") == []
+    assert marks(audit.check_any_paper(both, specs), "equally likely") == []
 
 
 def test_decimals_of_ma2020_are_not_equally_likely():
     tables = {
-        name: audit.printed_numbers(str(FOLDER / f"ma2020/published/{name}.csv"))
+        name: audit.read_printed_numbers(str(FOLDER / f"ma2020/published/{name}.csv"))
         for name in ("table1", "table2")
     }
-    (row,) = audit.of_digits(tables)
+    (row,) = audit.check_digits(tables)
     assert row["place"] == "272 decimals of 68 numbers"
     assert "1 36 13 26 60 16 27 45 25 23, by chance 27.2 each" in row["arithmetic"]
     assert "chi-square 92.2, p = 5.9e-16" in row["arithmetic"]
@@ -247,18 +250,18 @@ def test_decimals_of_ma2020_are_not_equally_likely():
 
 def test_friedman_from_mean_ranks_is_that_of_the_runs():
     ranks = np.array([[1, 2, 3, 4], [1, 3, 2, 4], [2, 1, 3, 4], [1, 2, 4, 3], [1, 2, 3, 4]])
-    apart, critical, chi_square, p, least = audit.friedman(ranks.mean(axis=0), len(ranks))
+    apart, critical, chi_square, p, least = audit.compute_friedman(ranks.mean(axis=0), len(ranks))
     expected = stats.friedmanchisquare(*ranks.T)
     assert (chi_square, p) == (pytest.approx(expected.statistic), pytest.approx(expected.pvalue))
     assert apart == pytest.approx(2.6)
     assert critical == pytest.approx(2.569 * math.sqrt(20 / 30), rel=1e-3)  # Demšar's Table 5
-    enough, few = (audit.friedman(ranks.mean(axis=0), n)[3] for n in (least, least - 1))
+    enough, few = (audit.compute_friedman(ranks.mean(axis=0), n)[3] for n in (least, least - 1))
     assert enough < audit.LEVEL <= few
 
 
 def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
     tables = {f"table{n}": read(f"tharwat2018/published/table{n}.csv") for n in (3, 4, 5)}
-    rows = audit.of_any_paper(tables, {name: spec() for name in tables})
+    rows = audit.check_any_paper(tables, {name: spec() for name in tables})
     found = {row["item"]: row["arithmetic"] for row in rows if "Friedman" in row["rule"]}
     # The ranks of Table 5 do not add up.
     assert found == {
@@ -270,12 +273,12 @@ def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
 
 
 def read(name):
-    return audit.printed_numbers(FOLDER / name)
+    return audit.read_printed_numbers(FOLDER / name)
 
 
 def test_middles_of_ma2020():
     tables = {f"table{n}": read(f"ma2020/published/table{n}.csv") for n in (1, 2)}
-    rows = audit.of_any_paper(tables, {name: spec() for name in tables})
+    rows = audit.check_any_paper(tables, {name: spec() for name in tables})
     (row,) = [row for row in rows if "middle of their range" in row["rule"]]
     assert (row["item"], row["place"]) == ("table1, table2", "12 means between minimum and maximum")
     assert row["arithmetic"].endswith("p = 0.015")
@@ -314,7 +317,7 @@ def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_dig
         f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"
     )
     bounds = pd.DataFrame({"bound": [bound]}, index=["across"])
-    (row,) = audit.below_bound("table1", audit.printed_numbers(str(file)), bounds, {})
+    (row,) = audit.check_bounds("table1", audit.read_printed_numbers(str(file)), bounds, {})
     assert bool(row["consistent"]) == consistent
     assert (row["printed"], row["limit"]) == (float(printed), bound)
     assert row["place"].startswith("problem=across, method=plain")

@@ -9,7 +9,7 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis import results
-from bezierplan.analysis.run_tables import table_digest
+from bezierplan.analysis.run_tables import compute_table_digest
 from bezierplan.running import columns, problems, rows
 from bezierplan.running.inputs import Files
 from bezierplan.study import captions, definition, jobs
@@ -136,13 +136,13 @@ def read(folder):
 
 def test_a_digest_is_of_all_rows_in_any_order(chunks):
     files = sorted((chunks / "runs/first/mine").glob("[0-9].parquet"))
-    digest = table_digest(files)
-    assert table_digest(files[::-1]) == digest
+    digest = compute_table_digest(files)
+    assert compute_table_digest(files[::-1]) == digest
     table = rows.read(str(files[0])).to_pylist()
     for row in table:
         changed = [each | {"length": 3.0} if each is row else each for each in table]
         rows.write(rows.build_table(changed, columns.Planned, columns.Outcome), str(files[0]))
-        assert table_digest(files) != digest
+        assert compute_table_digest(files) != digest
 
 
 def test_results_are_cut_at_the_number_of_repeats(chunks):

@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
 from bezierplan.analysis.claims.material import Display, Material, StudyForClaims
-from bezierplan.analysis.claims.ranks import signed_rank_test
+from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
 from bezierplan.analysis.claims.sentences import Entry
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
@@ -93,7 +93,7 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
     }
     of_study = {key: given[key] for key in ("variant_of", "paired", "repeats", "labels")}
     study = StudyForClaims("study", claims, artefacts, **of_study)
-    return judging.judge(Material(study, results, given["published"], given["functions"]))
+    return judging.judge_claims(Material(study, results, given["published"], given["functions"]))
 
 
 def compared(checks: pd.DataFrame) -> list[str]:
@@ -127,8 +127,8 @@ def test_two_constants_that_differ_have_a_mark_and_no_p(statistic, value, mark):
 
 @pytest.mark.parametrize(("findings", "mark", "number"), DATA["together"])
 def test_comparisons_together_hold_if_all_do_and_fail_if_one_does(findings, mark, number):
-    found, decisive = verdicts.conjunction([Finding(**each) for each in findings])
-    assert (verdicts.mark(found, found.p), decisive) == (mark, number)
+    found, decisive = verdicts.combine_findings([Finding(**each) for each in findings])
+    assert (verdicts.choose_mark(found, found.p), decisive) == (mark, number)
 
 
 def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
@@ -183,11 +183,15 @@ def test_any_names_make_right_sentences(names, together, tmp_path):
     assert [row["group"], row["relation"], row["other"]] == [group, "lower than", other]
     assert json.loads(row["place"]) == {"workspace": "a, b=c"}
     row = row.astype(object).where(row.notna(), None)
-    said = sentences.why(row, checks_of_claims.check_of(check), dict(zip(names, labels)), False)
+    said = sentences.explain_verdict(
+        row, checks_of_claims.check_of(check), dict(zip(names, labels)), False
+    )
     assert f", {labels[0]} is 1 m lower than {labels[1]} (95 % interval" in said
     assert said.startswith("Workspace a, b=c: in final value of the planner's objective, ")
     title = "all 1 together" if together else f"{labels[0]} lower than {labels[1]}"
-    named = sentences.title(row, checks_of_claims.check_of(check), dict(zip(names, labels)))
+    named = sentences.name_comparison(
+        row, checks_of_claims.check_of(check), dict(zip(names, labels))
+    )
     assert named == f"{title}, workspace a, b=c"
 
 
@@ -303,7 +307,7 @@ def test_signed_ranks_are_exact_with_ties_and_zeros(units):
     least = min(
         np.mean(sums <= ranks[difference > 0].sum()), np.mean(sums >= ranks[difference > 0].sum())
     )
-    assert signed_rank_test(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
+    assert compute_p_of_signed_ranks(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
 
 
 def test_pairs_need_both_runs():
@@ -429,7 +433,10 @@ def test_extremes_need_the_size_of_the_papers_experiment():
 def test_verdict(found):
     all_hold, any_holds = DATA["verdicts"][found]
     for order in {found, found[::-1], found[1:] + found[:1]}:
-        assert (verdicts.verdict(order, order, "all"), verdicts.verdict(order, order, "any")) == (
+        assert (
+            verdicts.judge_marks(order, order, "all"),
+            verdicts.judge_marks(order, order, "any"),
+        ) == (
             all_hold,
             any_holds,
         )
@@ -437,7 +444,10 @@ def test_verdict(found):
 
 @pytest.mark.parametrize(("alone", "together", "all_hold", "any_holds"), DATA["alone"])
 def test_verdict_by_marks_alone_and_in_the_family(alone, together, all_hold, any_holds):
-    assert (verdicts.verdict(alone, together, "all"), verdicts.verdict(alone, together, "any")) == (
+    assert (
+        verdicts.judge_marks(alone, together, "all"),
+        verdicts.judge_marks(alone, together, "any"),
+    ) == (
         all_hold,
         any_holds,
     )
@@ -446,8 +456,8 @@ def test_verdict_by_marks_alone_and_in_the_family(alone, together, all_hold, any
 def test_family_against_a_worked_example():
     """The fifteen p of Benjamini and Hochberg (1995, Section 3.2): four are rejected at 0.05."""
     p = np.array(DATA["p"])
-    assert (verdicts.family(p) < 0.05).sum() == 4
-    assert len(verdicts.family(np.array([]))) == 0
+    assert (verdicts.compute_family_p(p) < 0.05).sum() == 4
+    assert len(verdicts.compute_family_p(np.array([]))) == 0
 
 
 def test_a_large_family_of_ten_fields_can_be_contradicted():
@@ -481,11 +491,11 @@ def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
         found = []
         for p, mean in ((stats_of(rng.normal(apart, 1, 20))) for _ in range(20)):
             found.append(Finding(effect=mean, p=p, toward=int(np.sign(mean)), margin=0.3))
-        together = verdicts.family(np.array([each.p for each in found]))
-        alone = [verdicts.mark(each, each.p) for each in found]
+        together = verdicts.compute_family_p(np.array([each.p for each in found]))
+        alone = [verdicts.choose_mark(each, each.p) for each in found]
         given.append(
-            verdicts.verdict(
-                alone, [verdicts.mark(each, p) for each, p in zip(found, together)], "all"
+            verdicts.judge_marks(
+                alone, [verdicts.choose_mark(each, p) for each, p in zip(found, together)], "all"
             )
         )
     assert sum(verdict in wrong for verdict in given) <= 10
@@ -497,8 +507,8 @@ def stats_of(values: np.ndarray) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("toward", "p", "negligible", "expected"), DATA["marks"])
 def test_mark(toward, p, negligible, expected):
-    assert verdicts.mark(Finding(p=p, toward=toward, negligible=negligible), p) == expected
-    assert verdicts.mark(Finding(p=p, toward=toward, mark="-"), p) == "-"
+    assert verdicts.choose_mark(Finding(p=p, toward=toward, negligible=negligible), p) == expected
+    assert verdicts.choose_mark(Finding(p=p, toward=toward, mark="-"), p) == "-"
 
 
 # Words.
@@ -521,21 +531,21 @@ def test_words_for_where_a_claim_holds(holding, words):
         )
         for rival, workspace in itertools.product(["prm", "ga"], ["small", "large"])
     ]
-    assert sentences.told_apart(found, {"prm": "roadmap"}) == words
+    assert sentences.describe_split(found, {"prm": "roadmap"}) == words
 
 
 def test_words_for_columns_and_for_what_stays_mixed():
     found = [
         Entry({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)
     ]
-    assert sentences.told_apart(found, {}) == "at obstacles other than 5"
+    assert sentences.describe_split(found, {}) == "at obstacles other than 5"
     mixed = [
         Entry({"method": name}, mark)
         for name, marks in (("a", "++"), ("b", "+-"))
         for mark in marks
     ]
-    assert sentences.told_apart(mixed, {}) == "for a; for b in 1 of 2"
-    assert sentences.told_apart([Entry({}, "+"), Entry({"against": 1}, "-")], {}) == "in 1 of 2"
+    assert sentences.describe_split(mixed, {}) == "for a; for b in 1 of 2"
+    assert sentences.describe_split([Entry({}, "+"), Entry({"against": 1}, "-")], {}) == "in 1 of 2"
 
 
 def test_words_for_many_rivals_name_the_exceptions():
@@ -544,11 +554,13 @@ def test_words_for_many_rivals_name_the_exceptions():
         for name in ("gauss", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal")
     ]
     labels = {"circle": "Circle", "sinusoidal": "Sinusoidal"}
-    assert sentences.told_apart(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
+    assert sentences.describe_split(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
     unknown = [each._replace(mark="?") if each.mark == "-" else each for each in maps]
-    assert sentences.told_apart(unknown, labels).endswith("; undecided in 2 of 7")
+    assert sentences.describe_split(unknown, labels).endswith("; undecided in 2 of 7")
     contrary = [each._replace(mark="0" if each.mark == "+" else "-") for each in maps]
-    assert sentences.told_apart(contrary, labels) == "the contrary against Circle and Sinusoidal"
+    assert (
+        sentences.describe_split(contrary, labels) == "the contrary against Circle and Sinusoidal"
+    )
 
 
 def places(first: float, second: float) -> pd.DataFrame:
@@ -692,8 +704,8 @@ def test_variants_take_the_place_of_what_the_checks_name():
     runs = runs[runs["workspace"] == "grid"].assign(evaluations=lambda each: -each["objective"])
     assert judge(metric, runs)[0]["verdict"].to_list() == ["supported", "contradicted"]
     check, wanted = checks_of_claims.check_of(LOWER), {"blocked": None}
-    assert variants.in_variant([check], wanted, wanted) == [check]
-    (changed,) = variants.in_variant([check], wanted, {"blocked": True})
+    assert variants.apply_variant([check], wanted, wanted) == [check]
+    (changed,) = variants.apply_variant([check], wanted, {"blocked": True})
     assert changed.where == check.where | {"blocked": True}
 
 
@@ -701,9 +713,11 @@ def test_variant_that_is_a_list_is_exchanged_member_by_member():
     check = checks_of_claims.check_of(
         LOWER | {"than": ["b", "c"], "where": {"method": ["a", "b", "c"]}}
     )
-    (changed,) = variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
+    (changed,) = variants.apply_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
     assert (changed.than, changed.where) == (["e", "f"], {"method": ["a", "e", "f"]})
-    assert variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [check]
+    assert variants.apply_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [
+        check
+    ]
 
 
 def test_rest_is_the_same_in_every_variant():
@@ -884,9 +898,9 @@ def test_slopes_that_should_be_equal_are_equal_on_every_processor():
     """
     x = np.array([5.0, 10.0, 15.0, 20.0, 25.0])
     constant = np.repeat(np.arange(280, 320)[:, None] * 0.5, 5, axis=1)
-    assert not trend._slopes(x, constant).any()
+    assert not trend._compute_slopes(x, constant).any()
     changes = 0.5 * np.array([[0, 0, 1, 2, 2], [2, 2, 1, 0, 0], [0, 0, 0, 0, 0], [1, 0, 0, 0, 1]])
-    slopes = np.abs(trend._slopes(x, (constant[:, None] + changes).reshape(-1, 5)))
+    slopes = np.abs(trend._compute_slopes(x, (constant[:, None] + changes).reshape(-1, 5)))
     assert sorted(set(slopes.tolist())) == [0.0, pytest.approx(0.06)]
 
 
@@ -1137,7 +1151,7 @@ def test_columns():
     assert summary.columns.to_list() == columns.CLAIM_COLUMNS
     assert details.columns.to_list() == columns.CHECK_COLUMNS
     assert details["experiments"].to_list() == ["tried"]
-    assert set(summary["verdict"]) <= set(words.on("claim"))
+    assert set(summary["verdict"]) <= set(words.select_words("claim"))
 
 
 # How often a verdict is right.

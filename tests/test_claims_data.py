@@ -150,11 +150,11 @@ def test_no_key_of_a_file_is_unused(name, model):
     assert keys_of(model) - used == set()
 
 
-@pytest.mark.parametrize("name", kinds.kinds())
+@pytest.mark.parametrize("name", kinds.list_kinds())
 def test_no_key_of_a_kind_of_test_is_unused(name):
     """A key may be used by one kind and idle in another."""
     used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
-    assert set(list_keys(kinds.kinds()[name])) - used <= IDLE_KEYS
+    assert set(list_keys(kinds.list_kinds()[name])) - used <= IDLE_KEYS
 
 
 FAULTS = {

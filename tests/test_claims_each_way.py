@@ -21,7 +21,7 @@ from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import kinds
+from bezierplan.analysis.claims.kinds import list_kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
@@ -76,18 +76,18 @@ def deciding(key, claim) -> list[dict]:
     """
     material = Material(for_claims(key)._replace(variant_of={}), {}, published(key), {})
     sentence = Claim.model_validate(claim)
-    first, *_ = variants.variants(sentence)
-    checks = [comparisons.with_rest(check, sentence, material) for check in sentence.checks]
+    first, *_ = variants.list_variants(sentence)
+    checks = [comparisons.fill_rest(check, sentence, material) for check in sentence.checks]
     return [
-        variants.with_work(check)[0].plain()
-        for check in variants.in_variant(checks, first, first)
+        variants.split_work(check)[0].plain()
+        for check in variants.apply_variant(checks, first, first)
         if check.primary
     ]
 
 
 def is_generated(claim) -> bool:
     return all(
-        issubclass(kinds()[check["test"]], OfRuns)
+        issubclass(list_kinds()[check["test"]], OfRuns)
         for check in claim["checks"]
         if "secondary" not in check
     )
@@ -308,11 +308,11 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
-    functions = study_code.functions(own.code_for("functions"))
-    own_claims = [Claim.model_validate(claim).in_primary_variant()]
+    functions = study_code.load_functions(own.code_for("functions"))
+    own_claims = [Claim.model_validate(claim).select_primary_variant()]
     repeats = dict.fromkeys(results, 10)
     of_study = for_claims(key)._replace(claims=own_claims, repeats=repeats, labels={})
-    return judge.judge(Material(of_study, results, printed or published(key), functions))
+    return judge.judge_claims(Material(of_study, results, printed or published(key), functions))
 
 
 @pytest.fixture
@@ -362,10 +362,10 @@ def planners(key, check) -> set[str]:
 def test_no_claim_is_decided_by_seconds(key, identity):
     """Whether a check names them or a variant does: they are those of our code."""
     claim = Claim.model_validate(claim_of(key, identity))
-    first, *_ = assignments = variants.variants(claim)
+    first, *_ = assignments = variants.list_variants(claim)
     for assignment in assignments:
-        for check in variants.in_variant(claim.checks, first, assignment):
-            assert not (check.primary and is_timed(variants.with_work(check)[0].plain()))
+        for check in variants.apply_variant(claim.checks, first, assignment):
+            assert not (check.primary and is_timed(variants.split_work(check)[0].plain()))
 
 
 @pytest.mark.parametrize(("key", "identity"), CASES)

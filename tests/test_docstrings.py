@@ -34,11 +34,11 @@ FUNCTIONS = [
         region.is_blocked,
     ),
     *(
-        metrics.values,
-        metrics.unit,
-        statistics.statistic,
-        statistics.interval,
-        statistics.prediction,
+        metrics.compute_values,
+        metrics.find_unit,
+        statistics.compute_statistic,
+        statistics.compute_interval,
+        statistics.compute_prediction_interval,
     ),
 ]
 

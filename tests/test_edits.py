@@ -59,4 +59,4 @@ def test_a_printed_number_changes_what_draws_its_table():
 def test_a_map_is_drawn_without_a_planner(key, name):
     job = jobs.build_figure(study(key), "full", name)
     assert job.shows == {}
-    assert not any("planners" in module for module in job.modules())
+    assert not any("planners" in module for module in job.list_modules())

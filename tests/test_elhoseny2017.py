@@ -20,7 +20,7 @@ from bezierplan.study.jobs import build_chunk, build_problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {
-    file.stem: audit.printed_numbers(str(file))
+    file.stem: audit.read_printed_numbers(str(file))
     for file in sorted((FOLDER / "published").glob("*.csv"))
 }
 
@@ -66,7 +66,7 @@ def test_the_example_agrees_with_the_text():
 
 @pytest.fixture(scope="module")
 def rows():
-    return audit.table("elhoseny2017", own_audit.audit(PUBLISHED))
+    return audit.build_table("elhoseny2017", own_audit.audit(PUBLISHED))
 
 
 def broken(rows, rule):

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from chunks import BENDS, DISC
 
-from bezierplan.analysis.run_tables import row_text
+from bezierplan.analysis.run_tables import format_row
 from bezierplan.planners import load_planner
 from bezierplan.running import execution
 from bezierplan.running.guard import interface, process, worker
@@ -94,7 +94,7 @@ def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeyp
     monkeypatch.setattr(worker, "load_planner", lambda planner: here)
     monkeypatch.setattr(execution, "is_file", lambda planner: False)
     again, _ = execution.run_chunk({"disc": DISC}, given)
-    assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
+    assert list(map(format_row, again.to_pylist())) == list(map(format_row, runs.to_pylist()))
 
 
 def test_a_track_comes_from_the_same_process(tmp_path):

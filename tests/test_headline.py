@@ -35,7 +35,7 @@ def claims(**verdicts):
 
 
 def test_numbers_and_claims_are_said_in_two_sentences():
-    assert headline.sentence_of_numbers(
+    assert headline.describe_numbers(
         numbers(
             ("one", "inside", 10.0, 11.0, {"reason": comparison.NO_MAP}),
             ("one", "below", 10.0, 31.0, {}),
@@ -51,7 +51,7 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         one=["supported", "partly", "no effect"],
         two=["contradicted", "contradicted", "untestable"],
     )
-    assert headline.sentence_of_claims(judged) == (
+    assert headline.describe_claims(judged) == (
         "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 cannot be decided."
     )
 
@@ -59,11 +59,11 @@ def test_numbers_and_claims_are_said_in_two_sentences():
 def test_findings_of_ours_and_other_variants_do_not_count():
     own = claims(one=["supported", "contradicted", "contradicted"])
     own["finding"], own["primary"] = [False, True, False], [True, True, False]
-    assert headline.sentence_of_claims(own).startswith("Of 1 claim 1 hold, 0 hold in part, 0 fail")
+    assert headline.describe_claims(own).startswith("Of 1 claim 1 hold, 0 hold in part, 0 fail")
 
 
 def test_deviations_are_relative_and_of_quantities_that_the_paper_defines():
     undefined = ("one", "below", 5.0, 50.0, {"reason": comparison.UNDEFINED})
     table = numbers(("one", "inside", 5.0, 6.85, {}), undefined, ("one", "inside", 0.0, 1.0, {}))
-    assert headline.deviations(table) == pytest.approx([0.37, math.inf])
-    assert headline.deviations(numbers(("one", "inside", 0.0, 0.0, {}))) == 0
+    assert headline.compute_deviations(table) == pytest.approx([0.37, math.inf])
+    assert headline.compute_deviations(numbers(("one", "inside", 0.0, 0.0, {}))) == 0

@@ -23,16 +23,16 @@ WALL = from_lines([".#.", ".#.", "..."], 10.0, "unit")
 
 
 def found(grid, start, target, value, decimals=4, edges=3):
-    return identified.in_problem(
+    return identified.find_polylines(
         Problem("", grid, grid.centre(start), grid.centre(target)), value, decimals, edges
     )
 
 
 def by_force(grid, start, target, edges):
     """Lengths of all free polylines, in units, from every order of cells; edges as
-    `identified.ways` finds them.
+    `identified.list_edges` finds them.
     """
-    ways = identified.ways(grid)
+    ways = identified.list_edges(grid)
     places = {int(cell): number for number, cell in enumerate(ways.cells)}
     for count in range(edges):
         for inner in itertools.product(places, repeat=count):
@@ -45,7 +45,7 @@ def by_force(grid, start, target, edges):
 
 
 def test_an_edge_may_touch_an_occupied_cell_but_not_pass_through_it():
-    ways = identified.ways(WALL)
+    ways = identified.list_edges(WALL)
     at = {int(cell): number for number, cell in enumerate(ways.cells)}
     assert ways.lengths[at[0], at[2]] == pytest.approx(2)
     assert math.isinf(ways.lengths[at[3], at[5]])
@@ -78,18 +78,21 @@ def test_chance_is_the_share_of_numbers_nearby():
 
 
 def test_ends_beside_the_centres_are_not_tried():
-    assert identified.in_problem(Problem("", OPEN, (0.0, 0.0), (25.0, 25.0)), 28.2843, 4, 3) is None
+    assert (
+        identified.find_polylines(Problem("", OPEN, (0.0, 0.0), (25.0, 25.0)), 28.2843, 4, 3)
+        is None
+    )
 
 
 def test_a_length_has_the_chance_of_the_printed_numbers_to_which_it_rounds():
     lengths = np.array([9.996, 10.004, 10.026])  # as 10.00, 10.00 and 10.03
     numbers = 2 * round(identified.NEARBY / 0.01) + 1
-    assert identified._chance(lengths, 10.0, 0.005) == pytest.approx(2 / numbers)
+    assert identified._compute_chance(lengths, 10.0, 0.005) == pytest.approx(2 / numbers)
 
 
 def test_chance_of_as_many():
-    assert identified.at_least(2, [0.1, 0.2]) == pytest.approx(0.02)
-    assert identified.at_least(1, [0.1, 0.2]) == pytest.approx(0.28)
+    assert identified.compute_chance_of_at_least(2, [0.1, 0.2]) == pytest.approx(0.02)
+    assert identified.compute_chance_of_at_least(1, [0.1, 0.2]) == pytest.approx(0.28)
 
 
 def of_song2016(method):
@@ -97,14 +100,14 @@ def of_song2016(method):
     grid = from_lines(
         (FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit"
     )
-    published = audit.printed_numbers(FOLDER / "song2016/published/table1.csv")
+    published = audit.read_printed_numbers(FOLDER / "song2016/published/table1.csv")
     ends = {name: tuple(map(int, name.split("_"))) for name in published["problem"].unique()}
     problems = {
         name: Problem(name, grid, grid.centre(start), grid.centre(target))
         for name, (start, target) in ends.items()
     }
     entry = Identify(metric="objective", where={"method": method}, edges=7, because="polyline")
-    *rows, together = identified.of_table("table1", published, [entry], problems)
+    *rows, together = identified.check_declared_paths("table1", published, [entry], problems)
     return rows, together
 
 
@@ -141,7 +144,7 @@ def test_smooth_lengths_of_song2016_may_be_those_of_control_polygons():
     ],
 )
 def test_one_comparison_refutes_a_sentence_about_all_together(marks, verdict):
-    assert verdicts.verdict(marks, marks, "together") == verdict
+    assert verdicts.judge_marks(marks, marks, "together") == verdict
 
 
 def test_signed_curvature_counts_left_turns_alone():
@@ -175,20 +178,22 @@ def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_i
     square = Problem("", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
     problems, found = {f"environment{n}": square for n in (1, 2)}, {}
     for n in (1, 2):
-        published = audit.printed_numbers(FOLDER / f"ma2020/published/table{n}.csv")
+        published = audit.read_printed_numbers(FOLDER / f"ma2020/published/table{n}.csv")
         for statistic in ("min", "max"):
             where = {"method": ["aco", "ga", "aco_ga", "asfa_ga"]}
             told = {"metric": "length", "statistic": statistic, "where": where, "because": "cells"}
             entry = Identify(**told, diagonal=1.414)
-            *rows, together = identified.of_table(f"table{n}", published, [entry], problems)
+            *rows, together = identified.check_declared_paths(
+                f"table{n}", published, [entry], problems
+            )
             found[statistic] = found.get(statistic, 0) + together["printed"]
             if statistic == "min":
                 assert chance_of(together) < 1e-5
     assert found == {"min": 7, "max": 0}
     assert rows[3]["printed"] == 34.7728
-    moves = identified.of_moves(square, 32.3821, 1.414)
+    moves = identified.find_moves(square, 32.3821, 1.414)
     assert (moves.paths, moves.length) == ([(14, 13)], pytest.approx(32.382))
     assert 0 < moves.chance < 0.02
     # A root to four decimals does not give it, nor does an odd number of straight moves.
-    assert identified.of_moves(square, 32.3821, 1.4142).paths == []
-    assert identified.of_moves(square, 15 + 13 * 1.414, 1.414).paths == []
+    assert identified.find_moves(square, 32.3821, 1.4142).paths == []
+    assert identified.find_moves(square, 15 + 13 * 1.414, 1.414).paths == []

@@ -154,7 +154,7 @@ def test_an_event_at_its_limit(event, expected):
     ("share", "expected"), [(0.95, "+"), (0.949, "?"), (0.5, "?"), (0.051, "?"), (0.05, "-")]
 )
 def test_a_sentence_about_extremes_holds_in_19_of_20_draws(share, expected):
-    assert effects.by_share(share) == expected
+    assert effects.mark_share(share) == expected
 
 
 @pytest.mark.parametrize(("runs", "known"), [(100, True), (99, False)])
@@ -165,15 +165,15 @@ def test_ten_times_the_paper_s_runs_tell_a_chance(runs, known):
         terms, (), ("a", "b"), {"": values}, printed, 10, boolean=False, paired=False
     )
     check = checks_of_claims.check_of(LOWER | {"statistic": "min"})
-    assert effects.by_draws(check, compared, "").chance_known == known
+    assert effects.judge_by_draws(check, compared, "").chance_known == known
 
 
 def test_p_and_interval_of_draws():
     draws = np.repeat([-1.0, 0.0, 1.0], [2, 1, 97])
-    assert effects.two_sided(draws) == pytest.approx(2 * 3 / 100)
-    assert effects.two_sided(-draws) == pytest.approx(2 * 3 / 100)
-    assert effects.two_sided(np.array([-1.0, 0.0, 1.0])) == 1.0
-    assert effects.interval(np.arange(1001.0)) == (25.0, 975.0)
+    assert effects.compute_p(draws) == pytest.approx(2 * 3 / 100)
+    assert effects.compute_p(-draws) == pytest.approx(2 * 3 / 100)
+    assert effects.compute_p(np.array([-1.0, 0.0, 1.0])) == 1.0
+    assert effects.compute_interval_of_draws(np.arange(1001.0)) == (25.0, 975.0)
 
 
 @pytest.mark.parametrize(
@@ -227,12 +227,16 @@ def test_a_printed_number_is_possible_within_the_range_of_its_statistic(
     ],
 )
 def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, above):
-    low, high = comparison.as_printed(found, ours, decimals)
+    low, high = comparison.round_range(found, ours, decimals)
     assert (low, high) == pytest.approx(shown)
-    assert comparison.position(above, low, high) == "above"
-    assert comparison.position(low, low, high) == comparison.position(high, low, high) == "inside"
-    assert below == low or comparison.position(below, low, high) == "below"
-    assert comparison.position(ours, math.nan, math.nan) == comparison.NO_RANGE
+    assert comparison.find_position(above, low, high) == "above"
+    assert (
+        comparison.find_position(low, low, high)
+        == comparison.find_position(high, low, high)
+        == "inside"
+    )
+    assert below == low or comparison.find_position(below, low, high) == "below"
+    assert comparison.find_position(ours, math.nan, math.nan) == comparison.NO_RANGE
 
 
 # --------------------------------------------------------------------------------------------------
@@ -242,14 +246,14 @@ def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, ab
 @pytest.mark.parametrize(("second", "first"), [(12.5, 1), (12.6, 2)])
 def test_the_first_generation_within_a_quarter(second, first):
     runs = pd.DataFrame({"history": [[16.0, second, 10.0, 10.0]]})
-    assert measures.first_generation_within(0.25, runs, {}).tolist() == [first]
+    assert measures.find_first_generation(0.25, runs, {}).tolist() == [first]
 
 
 def test_near_the_shortest_within_a_quarter():
     runs = pd.DataFrame(
         {"length": [12.5, 12.6, 10.0], "bound": 10.0, "feasible": [True, True, False]}
     )
-    assert measures.near_shortest(0.25, runs, {}).tolist() == [True, False, False]
+    assert measures.is_near_shortest(0.25, runs, {}).tolist() == [True, False, False]
 
 
 @pytest.mark.parametrize(("turn", "corners"), [(2e-6, 1), (0.5e-6, 0), (math.pi / 2, 1)])

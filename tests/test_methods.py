@@ -60,7 +60,7 @@ def rows():
         "in the way": methods.Family("field", straight="blocked"),
         "one": methods.Family("field", ["free"]),
     }
-    return methods.of_studies({"mine": "curved"}, {"mine": families}, {"mine/field": results})
+    return methods.measure_studies({"mine": "curved"}, {"mine": families}, {"mine/field": results})
 
 
 def test_a_row_for_each_method_and_problem(rows):
@@ -85,15 +85,15 @@ def test_a_row_for_each_method_and_problem(rows):
 
 
 def test_families_stand_worst_first_and_say_where_a_method_adds_something(rows):
-    table = methods.of_families(rows)
+    table = methods.group_by_family(rows)
     assert table["method"].tolist()[0] == "curved"
     assert table["free"].tolist() == [0.75, 1.0, 1.0]
     assert table["adds"].sum() == 0
     shorter = rows.assign(excess=rows["rounded"] - 0.01)
     smoother = rows.assign(rounded_curvature=rows["curvature"] * 1.1)
-    assert methods.of_families(shorter)["adds"].sum() == 2
-    assert methods.of_families(smoother)["adds"].sum() == 1
-    text = methods.laid_out(table, {"mine/curved": "Curves"})
+    assert methods.group_by_family(shorter)["adds"].sum() == 2
+    assert methods.group_by_family(smoother)["adds"].sum() == 1
+    text = methods.format_table(table, {"mine/curved": "Curves"})
     assert text["scenarios"].tolist() == table["family"].tolist()
     assert text["free paths"].tolist() == ["75 %", "100 %", "100 %"]
     assert text.index[0] == "Curves"

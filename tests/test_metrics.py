@@ -31,7 +31,7 @@ def runs(paths=(), **columns) -> pd.DataFrame:
 
 
 def values(name: str, *paths, problems=PROBLEMS, **columns) -> list[float]:
-    return metrics.values(runs(paths, **columns), name, problems).to_list()
+    return metrics.compute_values(runs(paths, **columns), name, problems).to_list()
 
 
 def value(name: str, curve: str, points: list) -> float:
@@ -159,20 +159,24 @@ def test_run_without_a_path_has_no_value(name):
 
 @pytest.mark.parametrize("name", ["length", "generation_1pct", "max_curvature", "gap_best"])
 def test_no_runs_have_no_values(name):
-    assert metrics.values(runs(history=[[1.0]]).iloc[:0], name, PROBLEMS).empty
+    assert metrics.compute_values(runs(history=[[1.0]]).iloc[:0], name, PROBLEMS).empty
 
 
 def test_index_of_the_runs_is_kept():
     table = runs(history=[[2.0, 1.0], [1.0], [3.0, 2.0, 1.0]], feasible=[True, False, True]).iloc[
         [2, 0, 1]
     ]
-    assert metrics.values(table, "generation_improved", PROBLEMS).to_dict() == {2: 2, 0: 1, 1: 0}
+    assert metrics.compute_values(table, "generation_improved", PROBLEMS).to_dict() == {
+        2: 2,
+        0: 1,
+        1: 0,
+    }
 
 
 def test_units():
-    assert metrics.unit("length", "m") == "m"
-    assert metrics.unit("max_curvature", "cell") == "1/cell"
-    assert metrics.unit("evaluations", "m") == "-"
+    assert metrics.find_unit("length", "m") == "m"
+    assert metrics.find_unit("max_curvature", "cell") == "1/cell"
+    assert metrics.find_unit("evaluations", "m") == "-"
 
 
 CORNERED = [(0, 0), (5, 5), (15, 5), (15, 5), (25, 15), (35, 25)]

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis import metrics, results
-from bezierplan.analysis.run_tables import equal
+from bezierplan.analysis.run_tables import is_equal
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import execution, problems, rides
@@ -140,7 +140,7 @@ def test_equal_seeds_give_equal_drives(driven):
         pd.testing.assert_frame_equal(one[number].to_pandas(), other[number].to_pandas())
     stored = one[0].to_pylist()[1]
     found = replay.replay(stored["id"], {"mystudy": study})
-    assert equal(found.runs.iloc[0], stored)
+    assert is_equal(found.runs.iloc[0], stored)
 
 
 def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
@@ -332,14 +332,14 @@ def test_no_drive_arrives_before_any_robot_can(arrival, refused):
     runs = drives_of(("mine", 0, arrival)).assign(length=6.0)
     bounds = bounds_table(least_arrival=3.0)
     if not refused:
-        assert len(results.joined(runs, {}, bounds).runs) == 1
+        assert len(results.join_bounds(runs, {}, bounds).runs) == 1
         return
     with pytest.raises(
         ValueError,
         match=r"across/mine/0 is said to be feasible, "
         r"but its arrival 2\.9999 lies below the bound 3",
     ):
-        results.joined(runs, {}, bounds)
+        results.join_bounds(runs, {}, bounds)
 
 
 def paired_runs():
@@ -352,13 +352,13 @@ def paired_runs():
         ("blind", 0, np.nan),
         ("blind", 1, np.nan),
     )
-    return results.joined(runs, {}, bounds_table(least_arrival=6.0, octile_bound=np.nan))
+    return results.join_bounds(runs, {}, bounds_table(least_arrival=6.0, octile_bound=np.nan))
 
 
 def test_delays_are_paired_over_the_worlds_that_all_methods_finish():
     found = paired_runs()
     both = results.select(found.runs, {"method": ["one", "other"]})
-    assert metrics.values(both, "paired_gap_least_arrival", {}).tolist() == pytest.approx(
+    assert metrics.compute_values(both, "paired_gap_least_arrival", {}).tolist() == pytest.approx(
         [0.1, np.nan, 0.2, np.nan], nan_ok=True
     )
-    assert metrics.values(found.runs, "paired_gap_least_arrival", {}).isna().all()
+    assert metrics.compute_values(found.runs, "paired_gap_least_arrival", {}).isna().all()

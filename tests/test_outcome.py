@@ -47,11 +47,11 @@ def comparison(values, ours, methods=("plain", "other")):
 
 def test_numbers_without_a_published_value_are_left_out():
     table = comparison([1.0, float("nan")], [1.2, 1.2])
-    assert summary.numbers({("one", "table1"): table})["method"].tolist() == ["plain"]
+    assert summary.list_numbers({("one", "table1"): table})["method"].tolist() == ["plain"]
 
 
 def counted(*tables):
-    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)})[
+    return summary.list_numbers({("one", f"table{n}"): table for n, table in enumerate(tables)})[
         "counted"
     ].tolist()
 

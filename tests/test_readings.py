@@ -158,7 +158,7 @@ def test_a_claim_depends_on_a_reading_that_decides_the_opposite(
 ):
     """One that decides nothing is told, and is no agreement."""
     meanings = {"slow": "How fast: 2", "far": "How far: 3"}
-    found = by_reading.with_dependence(CLAIMS, under(**verdicts), meanings, {})
+    found = by_reading.add_dependence(CLAIMS, under(**verdicts), meanings, {})
     assert [*found["verdict"]] == [verdict, "undecided", "supported", "undecided"]
     assert [*found["readings"]] == [readings, "", "", ""]
     assert found["reason"][0] == reason
@@ -166,7 +166,7 @@ def test_a_claim_depends_on_a_reading_that_decides_the_opposite(
 
 def test_a_claim_depends_on_a_variant_with_any_other_verdict():
     claims = CLAIMS.assign(verdict=["supported", "partly", "supported", "undecided"])
-    found = by_reading.with_dependence(claims, {}, {}, {"metric=length": "metric length"})
+    found = by_reading.add_dependence(claims, {}, {}, {"metric=length": "metric length"})
     assert [*found["verdict"]] == ["depends", "partly", "supported", "undecided"]
     assert found["reason"][0] == "supported by default, partly with metric length; why"
     assert {*found["readings"]} == {""}
@@ -185,7 +185,7 @@ def test_a_claim_of_two_checks_has_the_verdict_on_each(tmp_path):
     judged = pd.DataFrame({"id": ["C24"], "variant": "", "primary": True, "verdict": "partly"})
     checks.assign(mark="0", mark_family="0").to_csv(tmp_path / "checks.csv")
     read = by_reading.read_checks(tmp_path / "checks.csv").assign(variant="")
-    rows = by_reading.by_check(
+    rows = by_reading.list_checks(
         [claim],
         {
             by_reading.DEFAULT: by_reading.ClaimTables(judged, checks),

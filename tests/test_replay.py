@@ -7,7 +7,7 @@ import pytest
 from studies import study
 
 from bezierplan.__main__ import main
-from bezierplan.analysis.run_tables import equal
+from bezierplan.analysis.run_tables import is_equal
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
 from bezierplan.schema.checked import Fault
@@ -22,7 +22,7 @@ def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
     made, _ = problems.build_all(build_problems_job(study, "routes", "smoke"), study.folder)
     runs, _ = execution.run_chunk(made, described)
     for row in runs.to_pylist():
-        assert equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)
+        assert is_equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)
 
 
 def test_run_made_again_differs_from_another(tmp_path):
@@ -30,8 +30,8 @@ def test_run_made_again_differs_from_another(tmp_path):
         replay.replay(f"song2016/routes/0_15/random_search/{repeat}", STUDIES).runs.iloc[0]
         for repeat in (0, 1)
     )
-    assert equal(one, one.to_dict())
-    assert not equal(one, other.to_dict())
+    assert is_equal(one, one.to_dict())
+    assert not is_equal(one, other.to_dict())
 
 
 def test_a_run_is_described_and_drawn_with_its_first_collision(tmp_path, monkeypatch, capsys):
@@ -72,8 +72,8 @@ def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, 
         "collision_at": 1.0,
         "path_points": [0.0, 0.0, 1.0, 2.0],
     }
-    assert equal(pd.Series(stored), stored)
-    assert not equal(pd.Series(stored), stored | {column: other})
+    assert is_equal(pd.Series(stored), stored)
+    assert not is_equal(pd.Series(stored), stored | {column: other})
     # A column that only other problems of the chunk have.
-    assert equal(pd.Series(stored), stored | {"reference": None})
-    assert not equal(pd.Series(stored), stored | {"reference": 3.0})
+    assert is_equal(pd.Series(stored), stored | {"reference": None})
+    assert not is_equal(pd.Series(stored), stored | {"reference": 3.0})

@@ -42,7 +42,7 @@ def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
         ValueError,
         match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound",
     ):
-        results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
+        results.join_bounds(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
 
 
 def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal():
@@ -64,7 +64,7 @@ def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal(
     )
     for varied, same in (("path_points", "history"), ("history", "path_points")):
         lists = {varied: [[each] for each in made["found"]], same: [[0.0]] * len(made)}
-        joined = results.joined(made.assign(**lists), {"disc": DISC}, BOUNDS).runs
+        joined = results.join_bounds(made.assign(**lists), {"disc": DISC}, BOUNDS).runs
         assert joined[["method", "repeat"]].values.tolist() == [
             [method, repeat] for method in "abcd" for repeat in (0, 1)
         ]
@@ -76,18 +76,22 @@ def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal(
             "d/0",
             "d/1",
         ]
-        assert np.flatnonzero(results.repeated(joined)).tolist() == [3, 5]
+        assert np.flatnonzero(results.is_repeated(joined)).tolist() == [3, 5]
 
 
 def test_colliding_path_may_be_shorter_than_the_bound():
     assert (
-        len(results.joined(runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS).runs)
+        len(
+            results.join_bounds(
+                runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS
+            ).runs
+        )
         == 2
     )
 
 
 def test_bound_itself_and_what_the_tolerance_leaves_of_it_are_accepted():
-    joined = results.joined(runs([BOUND, BOUND - 5e-9]), {"disc": DISC}, BOUNDS)
+    joined = results.join_bounds(runs([BOUND, BOUND - 5e-9]), {"disc": DISC}, BOUNDS)
     assert joined.runs["bound"].tolist() == [BOUND, BOUND]
 
 
@@ -126,7 +130,7 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     )
 
     def audited(table, bounds, primary):
-        return [row["consistent"] for row in audit.below_bound("t", table, bounds, primary)]
+        return [row["consistent"] for row in audit.check_bounds("t", table, bounds, primary)]
 
     assert audited(table, one, {}) == [False, True]
     assert audited(table, two, {}) == []
@@ -151,5 +155,5 @@ def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent)
         }
     )
     bounds = pd.DataFrame({"bound": [8.9549]}, index=["disc"])
-    (row,) = audit.below_bound("t", table, bounds, {})
+    (row,) = audit.check_bounds("t", table, bounds, {})
     assert row["consistent"] == consistent

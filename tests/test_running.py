@@ -9,7 +9,7 @@ import pytest
 from chunks import BENDS, DISC
 
 from bezierplan.analysis import results
-from bezierplan.analysis.run_tables import row_text
+from bezierplan.analysis.run_tables import format_row
 from bezierplan.running import execution, problems
 from bezierplan.running.guard import interface, worker
 
@@ -62,7 +62,7 @@ def test_rows_stand_in_order_and_do_not_depend_on_it(planner, monkeypatch):
         lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats],
     )
     again, _ = execution.run_chunk({"disc": DISC}, given)
-    assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
+    assert list(map(format_row, again.to_pylist())) == list(map(format_row, runs.to_pylist()))
 
 
 def test_conditions_take_turns():
@@ -111,8 +111,8 @@ def test_repeats_count_as_one_where_they_are_equal_and_nothing_was_drawn(planner
     told = f"run study/bends/*/bend: planner bend: {worker.ALIKE[drew]}\n"
     assert capsys.readouterr().err == (told if different == 1 else "")
     bounds = problems.compute_bounds({"disc": DISC}, {}).to_pandas()
-    read = results.joined(runs.to_pandas(), {"disc": DISC}, bounds).runs
-    assert (~results.repeated(read)).sum() == (6 if drew else different)
+    read = results.join_bounds(runs.to_pandas(), {"disc": DISC}, bounds).runs
+    assert (~results.is_repeated(read)).sum() == (6 if drew else different)
 
 
 def test_a_planner_that_draws_nothing_and_says_so_is_not_told_of_it(planner, capsys):

@@ -13,13 +13,13 @@ def test_summaries_count_free_runs_and_take_the_excess_of_these():
     runs = pd.DataFrame({"problem": "a", "method": ["m"] * 3 + ["n"], "shortest": 10.0})
     runs = runs.assign(length=[12.0, 1.0, 11.0, 11.2], feasible=[True, False, True, True])
     runs = runs.assign(evaluations=5, curvature=1.0, cpu_s=2.0)
-    rows = benchmark.summaries(runs).set_index("method")
+    rows = benchmark.compute_summaries(runs).set_index("method")
     assert rows.loc["m"].to_list()[1:] == pytest.approx([3, 2 / 3, 11.5, 0.15, 1, 5, 2])
     # Free more often comes before shorter; of two problems the mean rank.
     other = rows.reset_index().assign(problem="b", feasible=1.0)
-    ranks = benchmark.scores(pd.concat([rows.reset_index(), other]))["rank"]
+    ranks = benchmark.rank_methods(pd.concat([rows.reset_index(), other]))["rank"]
     assert ranks.to_dict() == {"n": 1.0, "m": 2.0}
-    tied = benchmark.scores(rows.reset_index().assign(feasible=1.0, excess=np.nan))["rank"]
+    tied = benchmark.rank_methods(rows.reset_index().assign(feasible=1.0, excess=np.nan))["rank"]
     assert tied.to_list() == [1.5, 1.5]
 
 
@@ -78,5 +78,5 @@ def test_a_file_of_paths_that_cannot_be_scored_is_told_in_one_line(text, word, t
 
 def test_what_is_stored_is_of_the_problems_that_studies_have():
     for experiment in ("song2016/routes", "meledje/operators", "elhoseny2017/maps"):
-        own = benchmark.stored(experiment)
+        own = benchmark.read_stored(experiment)
         assert set(own["problem"]) == set(bp.problems(experiment))

@@ -135,7 +135,9 @@ def check_of(test, **written):
 def test_each_kind_of_test_has_a_sentence(row, check, terms, sentence):
     given = ROW | dict(zip(("group", "relation", "other"), terms)) | row
     labels = {"case1": "Case 1", "bca_q": "bca_q"}
-    found = sentences.why(given, check_of(given["test"], **check), labels, own_criterion=False)
+    found = sentences.explain_verdict(
+        given, check_of(given["test"], **check), labels, own_criterion=False
+    )
     assert found == sentence
 
 
@@ -149,4 +151,4 @@ def test_each_kind_of_test_has_a_sentence(row, check, terms, sentence):
     ],
 )
 def test_a_count_says_how_many_are_needed(holds, verdict, count, said):
-    assert sentences.rule(SimpleNamespace(holds=holds), verdict, count) == said
+    assert sentences.describe_count(SimpleNamespace(holds=holds), verdict, count) == said

@@ -72,7 +72,7 @@ def test_the_example_runs(mine):
     verdicts = pd.read_csv(made / "claims.csv").set_index("id")["verdict"]
     assert verdicts.to_dict() == VERDICTS
     tests = re.findall(r"test: (\w+)", (mine / "claims.yaml").read_text())
-    assert sorted(tests) == sorted(kinds.kinds())
+    assert sorted(tests) == sorted(kinds.list_kinds())
     # The worst directions, by hand: (24 + 10) / 26 and (14 + 10 sqrt 2) / 26.
     table = (made / "paper" / "table1.csv").read_text()
     assert "1.41,1.00" in table

@@ -13,12 +13,12 @@ from bezierplan.analysis import statistics
 from bezierplan.analysis.statistics import (
     LEAST_RUNS,
     STATISTICS,
-    interval,
-    predicted,
-    prediction,
-    resampled,
-    scaled,
-    statistic,
+    compute_interval,
+    compute_prediction_interval,
+    compute_statistic,
+    draw_predictions,
+    resample,
+    scale_statistic,
 )
 from bezierplan.workspaces.seeds import generator
 
@@ -48,28 +48,28 @@ def few_draws():
     ],
 )
 def test_worked_example(name, expected):
-    assert statistic(name, np.array([10.0, 1.0, 3.0, 4.0, 2.0])) == pytest.approx(expected)
+    assert compute_statistic(name, np.array([10.0, 1.0, 3.0, 4.0, 2.0])) == pytest.approx(expected)
 
 
 def test_count_and_share_of_a_boolean_metric():
     values = np.array([1.0, 0.0, 1.0, 1.0])
-    assert statistic("count", values) == 3
-    assert statistic("share", values) == 0.75
+    assert compute_statistic("count", values) == 3
+    assert compute_statistic("share", values) == 0.75
 
 
 @pytest.mark.parametrize("name", STATISTICS)
 def test_no_values_give_no_number(name):
-    assert math.isnan(statistic(name, np.array([])))
+    assert math.isnan(compute_statistic(name, np.array([])))
 
 
 def test_one_value_has_no_standard_deviation():
-    assert math.isnan(statistic("std", np.array([2.0])))
+    assert math.isnan(compute_statistic("std", np.array([2.0])))
 
 
 @given(samples)
 def test_quantiles_are_those_of_numpy(values):
     for name, share in [("quartile1", 0.25), ("median", 0.5), ("quartile3", 0.75)]:
-        assert statistic(name, values) == pytest.approx(
+        assert compute_statistic(name, values) == pytest.approx(
             np.quantile(values, share), rel=1e-12, abs=1e-9
         )
 
@@ -77,12 +77,14 @@ def test_quantiles_are_those_of_numpy(values):
 @pytest.mark.parametrize("name", STATISTICS)
 def test_rows_are_taken_one_by_one(name):
     values = np.random.default_rng(0).random((4, 7))
-    assert STATISTICS[name](values) == pytest.approx([statistic(name, row) for row in values])
+    assert STATISTICS[name](values) == pytest.approx(
+        [compute_statistic(name, row) for row in values]
+    )
 
 
 def test_resampled_mean_has_the_standard_error():
     values = np.random.default_rng(1).normal(size=50)
-    drawn = resampled("mean", values, 20, generator("standard error"))
+    drawn = resample("mean", values, 20, generator("standard error"))
     assert drawn.shape == (statistics.DRAWS,)
     assert drawn.std() == pytest.approx(values.std() / math.sqrt(20), rel=0.05)
 
@@ -92,7 +94,7 @@ def test_interval_covers_the_truth_about_95_times_in_100(name):
     rng = np.random.default_rng(2)
     hits = 0
     for repeat in range(150):
-        low, high = interval(name, rng.normal(size=40), generator(f"coverage {repeat}"))
+        low, high = compute_interval(name, rng.normal(size=40), generator(f"coverage {repeat}"))
         hits += low <= 0 <= high
     assert 0.88 <= hits / 150 <= 0.99
 
@@ -100,7 +102,7 @@ def test_interval_covers_the_truth_about_95_times_in_100(name):
 @pytest.mark.parametrize(("count", "tolerance"), [(100, 0.1), (1000, 0.01)])
 def test_both_ends_of_the_interval_of_a_mean_are_1_96_standard_errors_away(count, tolerance):
     values = np.random.default_rng(9).normal(5, 2, count)
-    ends = np.array(interval("mean", values, generator("both ends"))) - values.mean()
+    ends = np.array(compute_interval("mean", values, generator("both ends"))) - values.mean()
     error = values.std(ddof=1) / math.sqrt(count)
     assert ends / error == pytest.approx([-1.96, 1.96], rel=tolerance)
 
@@ -109,24 +111,26 @@ def test_both_ends_of_the_interval_of_a_mean_are_1_96_standard_errors_away(count
 def test_interval_of_many_values_is_nearly_that_of_the_bootstrap(name, monkeypatch):
     values = np.random.default_rng(7).gamma(4, size=400)
     values = (values > 3).astype(float) if name in ("count", "share") else values
-    low, high = interval(name, values, generator("many"))
+    low, high = compute_interval(name, values, generator("many"))
     monkeypatch.setattr(statistics, "MOST_RESAMPLED", 1000)
     assert (low, high) == pytest.approx(
-        interval(name, values, generator("many")), abs=0.2 * (high - low)
+        compute_interval(name, values, generator("many")), abs=0.2 * (high - low)
     )
-    assert low < statistic(name, values) < high
+    assert low < compute_statistic(name, values) < high
 
 
 def test_interval_of_many_values_with_infinite_ones_is_resampled():
     values = np.append(np.random.default_rng(8).normal(size=400), math.inf)
-    assert all(map(math.isfinite, interval("median", values, generator("infinite"))))
+    assert all(map(math.isfinite, compute_interval("median", values, generator("infinite"))))
 
 
 @pytest.mark.parametrize(
     ("name", "count"), [("mean", 0), ("mean", 1), ("min", 10), ("max", 10), ("range", 10)]
 )
 def test_interval_is_empty_where_it_would_say_nothing(name, count):
-    assert all(math.isnan(end) for end in interval(name, np.arange(float(count)), generator("a")))
+    assert all(
+        math.isnan(end) for end in compute_interval(name, np.arange(float(count)), generator("a"))
+    )
 
 
 @given(
@@ -136,10 +140,12 @@ def test_interval_is_empty_where_it_would_say_nothing(name, count):
     st.sampled_from(sorted(STATISTICS)),
 )
 def test_draws_from_equal_values_are_the_statistic_of_as_many(value, runs, size, name):
-    drawn = resampled(name, np.full(runs, value), size, generator("equal"))
+    drawn = resample(name, np.full(runs, value), size, generator("equal"))
     assert drawn.shape == (statistics.DRAWS,)
     assert np.array_equal(
-        drawn, np.full(statistics.DRAWS, statistic(name, np.full(size, value))), equal_nan=True
+        drawn,
+        np.full(statistics.DRAWS, compute_statistic(name, np.full(size, value))),
+        equal_nan=True,
     )
 
 
@@ -154,27 +160,27 @@ def inside(published, low_high):
 @pytest.mark.parametrize(("name", "away"), [("mean", -100), ("mean", 100), ("median", 90)])
 def test_value_far_off_is_out_of_range_and_one_in_the_middle_in_it(name, away, size):
     middle = float(np.median(OURS))
-    found = prediction(name, OURS, size, generator("middle"))
+    found = compute_prediction_interval(name, OURS, size, generator("middle"))
     assert inside(middle, found)
     assert not inside(middle + away, found)
 
 
 @pytest.mark.parametrize(("factor", "fits"), [(0.4, False), (1.0, True), (2.5, False)])
 def test_standard_deviation_far_off_is_refused(factor, fits):
-    printed = factor * statistic("std", OURS)
-    assert inside(printed, prediction("std", OURS, 30, generator("far"))) == fits
+    printed = factor * compute_statistic("std", OURS)
+    assert inside(printed, compute_prediction_interval("std", OURS, 30, generator("far"))) == fits
 
 
 def test_size_of_the_papers_experiment_matters():
     # One and a half standard deviations are ordinary for one run, and far from the mean of sixty.
     published = float(OURS.mean() + 1.5 * OURS.std())
-    assert inside(published, prediction("mean", OURS, 1, generator("size")))
-    assert not inside(published, prediction("mean", OURS, 60, generator("size")))
+    assert inside(published, compute_prediction_interval("mean", OURS, 1, generator("size")))
+    assert not inside(published, compute_prediction_interval("mean", OURS, 60, generator("size")))
 
 
 @pytest.mark.parametrize("values", [np.array([]), OURS[: LEAST_RUNS - 1]])
 def test_too_few_runs_have_no_range(values):
-    assert np.isnan(prediction("mean", values, 10, generator("few"))).all()
+    assert np.isnan(compute_prediction_interval("mean", values, 10, generator("few"))).all()
 
 
 def _drawn(name: str, size: int, rng: np.random.Generator) -> np.ndarray:
@@ -203,44 +209,47 @@ def test_prediction_refuses_few_true_numbers(name, shape, most, ours, theirs):
             getattr(rng, shape)(size=size) if shape else _drawn(name, size, rng)
             for size in (ours, theirs)
         )
-        found = prediction(name, values, theirs, generator(f"true {repeat}"))
-        refused += not inside(statistic(name, others), found)
+        found = compute_prediction_interval(name, values, theirs, generator(f"true {repeat}"))
+        refused += not inside(compute_statistic(name, others), found)
     assert refused / 400 <= most
 
 
 def test_no_extreme_lies_beyond_what_is_possible():
-    assert prediction("min", OURS, 60, generator("bound"), (80.0, math.inf))[0] == 80.0
-    assert prediction("min", OURS, 60, generator("bound"))[0] < 80
+    assert (
+        compute_prediction_interval("min", OURS, 60, generator("bound"), (80.0, math.inf))[0]
+        == 80.0
+    )
+    assert compute_prediction_interval("min", OURS, 60, generator("bound"))[0] < 80
 
 
 def test_predicted_mean_has_the_error_of_both_samples():
     values = np.random.default_rng(1).normal(size=50)
-    drawn = predicted("mean", values, 20, generator("both"))
+    drawn = draw_predictions("mean", values, 20, generator("both"))
     assert drawn.shape == (statistics.DRAWS,)
     assert drawn.std() == pytest.approx(values.std() * math.sqrt(1 / 20 + 1 / 50), rel=0.08)
 
 
 def test_counts_and_extremes_are_scaled_to_the_size_of_the_experiment():
     events = np.array([1.0, 0.0] * 20)
-    assert scaled("count", events, 40, 10) == 5.0
-    assert scaled("count", events, 80, 10) == 2.5, "runs without a value are runs as well"
+    assert scale_statistic("count", events, 40, 10) == 5.0
+    assert scale_statistic("count", events, 80, 10) == 2.5, "runs without a value are runs as well"
     values = np.arange(1.0, 1001.0)
     # The median of the least of n uniform values is 1 - 2 ** (-1 / n).
-    assert scaled("min", values, 1000, 10) == pytest.approx(1000 * (1 - 2**-0.1), abs=2)
-    assert scaled("max", values, 1000, 10) == pytest.approx(1000 * 2**-0.1, abs=2)
+    assert scale_statistic("min", values, 1000, 10) == pytest.approx(1000 * (1 - 2**-0.1), abs=2)
+    assert scale_statistic("max", values, 1000, 10) == pytest.approx(1000 * 2**-0.1, abs=2)
 
 
 @pytest.mark.parametrize("name", ["mean", "median", "std", "share"])
 def test_other_statistics_are_not_scaled(name):
     values = np.arange(1.0, 12.0)
-    assert scaled(name, values, 11, 3) == statistic(name, values)
+    assert scale_statistic(name, values, 11, 3) == compute_statistic(name, values)
 
 
 def test_what_our_values_do_not_determine_is_not_scaled():
     values = np.arange(1.0, 6.0)
-    assert scaled("min", values, 5, 100) == 1.0
-    assert scaled("min", values, 5, None) == 1.0
-    assert math.isnan(scaled("count", np.empty(0), 5, 3))
+    assert scale_statistic("min", values, 5, 100) == 1.0
+    assert scale_statistic("min", values, 5, None) == 1.0
+    assert math.isnan(scale_statistic("count", np.empty(0), 5, 3))
 
 
 def test_experiments_within_one_group_vary_as_the_groups_do():
@@ -248,12 +257,12 @@ def test_experiments_within_one_group_vary_as_the_groups_do():
     layouts together.
     """
     groups = [np.full(10, float(layout)) for layout in range(8)]
-    drawn = statistics.predicted_within("mean", groups, 10, generator("within"))
+    drawn = statistics.draw_predictions_within("mean", groups, 10, generator("within"))
     assert set(drawn) == set(map(float, range(8)))
     together = np.concatenate(groups)
-    found = prediction("mean", together, 10, generator("within"), groups=groups)
+    found = compute_prediction_interval("mean", together, 10, generator("within"), groups=groups)
     assert inside(7.0, found)
-    assert not inside(7.0, prediction("mean", together, 10, generator("within")))
+    assert not inside(7.0, compute_prediction_interval("mean", together, 10, generator("within")))
 
 
 def test_predictions_within_groups_are_right_as_often_as_stated():
@@ -265,7 +274,12 @@ def test_predictions_within_groups_are_right_as_often_as_stated():
     for _ in range(500):
         groups = [rng.normal(centre, 1.0, 10) for centre in rng.normal(0.0, 2.0, 50)]
         new = rng.normal(rng.normal(0.0, 2.0), 1.0, 10).mean()
-        held.append(inside(new, prediction("mean", np.concatenate(groups), 10, rng, groups=groups)))
+        held.append(
+            inside(
+                new,
+                compute_prediction_interval("mean", np.concatenate(groups), 10, rng, groups=groups),
+            )
+        )
     assert 0.92 <= np.mean(held) <= 0.98
 
 
@@ -277,7 +291,7 @@ def test_a_quantiles_influence_is_a_worked_example():
     reach = 1.96 * 0.5 / math.sqrt(101)
     low, high = np.quantile(values, [0.5 - reach, 0.5 + reach])
     slope = (high - low) / (2 * reach)
-    found = statistics.influence("median", values)
+    found = statistics.compute_influence("median", values)
     assert found[[0, 50, 51, 100]] == pytest.approx(
         [-0.5 * slope, -0.5 * slope, 0.5 * slope, 0.5 * slope]
     )
@@ -287,5 +301,5 @@ def test_a_predicted_share_is_drawn_from_jeffreys_posterior():
     """Of 0 true values in 3, the mean share is that of Beta(0.5, 3.5): 1 in 8; a uniform prior
     would say 1 in 5.
     """
-    found = predicted("share", np.zeros(3, dtype=bool), 1000, generator("prior"))
+    found = draw_predictions("share", np.zeros(3, dtype=bool), 1000, generator("prior"))
     assert found.mean() == pytest.approx(0.125, abs=0.02)

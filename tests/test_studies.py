@@ -41,12 +41,12 @@ def faults(rows):
 
 
 def test_audit_of_song2016():
-    rows = rules.audit(published("song2016"))
+    rows = rules.check_rules(published("song2016"))
     (row,) = rows
     assert (row["printed"], row["consistent"]) == (8, True)
     late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
     assert (
-        len(faults(rules.audit(published("song2016") | {"table1": late})))
+        len(faults(rules.check_rules(published("song2016") | {"table1": late})))
         == (late["value"] == 101).sum()
         > 0
     )
@@ -257,13 +257,17 @@ def test_homotopy_class():
     """A circle to the left of the path is swept counterclockwise. Circle 0 is the upper one, 1 the
     right one, 2 the one near the start.
     """
-    found = metrics.values(
+    found = metrics.compute_values(
         pd.DataFrame([run(way) for way in WAYS]), "homotopy", {"equal": problem("equal")}
     )
     assert dict(zip(WAYS, found)) == {"above": 0, "below": 7, "between": 1}
     made = pd.DataFrame([run("between"), run("above"), run("between", feasible=False)])
     made["bound_path"] = [np.ravel([(0, 0), *WAYS["between"], (4, 6)])] * 3
-    assert metrics.values(made, "best_corridor", {"equal": problem("equal")}).to_list() == [1, 0, 0]
+    assert metrics.compute_values(made, "best_corridor", {"equal": problem("equal")}).to_list() == [
+        1,
+        0,
+        0,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -336,8 +340,10 @@ def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
     specs = jobs.build_audit(study, "full").tables
     tables = published("tharwat2018")
-    compared = {name: audit.printed_numbers(study.find_published_file(name)) for name in specs}
-    rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, specs))
+    compared = {name: audit.read_printed_numbers(study.find_published_file(name)) for name in specs}
+    rows = audit.build_table(
+        "tharwat2018", rules.check_rules(tables) + audit.check_any_paper(compared, specs)
+    )
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")
     # Those of Tables 3 and 4 add up.
@@ -377,10 +383,10 @@ def test_audit_of_tharwat2018():
 )
 def test_audit_sees_a_changed_number(table, metric):
     numbers = published("tharwat2018")
-    before = faults(rules.audit(numbers))
+    before = faults(rules.check_rules(numbers))
     changed = numbers[table].copy()
     changed.loc[changed.index[changed["metric"] == metric][-1], "value"] = 7.0
-    assert len(faults(rules.audit(numbers | {table: changed})) - before) > 0
+    assert len(faults(rules.check_rules(numbers | {table: changed})) - before) > 0
 
 
 def test_published_numbers_of_tharwat2018():

@@ -79,7 +79,7 @@ def printed(metric: str, statistic: str, n: float, numbers: dict) -> pd.DataFram
 
 def pivot(ours: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
     printed = published().assign(as_printed=["10", "10.00", "1000"])
-    return tables.pivot(ours, pivot_of(spec), labels, printed)
+    return tables.build_pivot(ours, pivot_of(spec), labels, printed)
 
 
 def beside(ours: Results, spec: dict, printed: pd.DataFrame, **variants: str) -> pd.DataFrame:
@@ -144,7 +144,7 @@ def in_cells(
         pivot(ours, spec, labels),
         beside(ours, spec, printed).dropna(subset="as_printed"),
     )
-    return tables.laid(placed, placed["as_printed"], table.index, table.columns)
+    return tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
 
 
 @pytest.mark.parametrize(
@@ -478,7 +478,7 @@ def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
     sizes = []
     monkeypatch.setattr(
         statistics,
-        "prediction",
+        "compute_prediction_interval",
         lambda *given: sizes.append(given[2]) or (9.0, 11.0),
     )
     least(10.0, n=10)
@@ -493,7 +493,7 @@ def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
         {"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted
     ]
     spec = pivot_of(SPEC | {"values": values, "where": {"problem": "long"}})
-    cells = tables.cells(ours, spec, ["problem", "method"])
+    cells = tables.compute_cells(ours, spec, ["problem", "method"])
     assert cells.groupby("metric")["bound"].unique().map(list).to_dict() == {
         "length": [9.0],
         "cells4": [11.0],
@@ -545,14 +545,14 @@ def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
     file = tmp_path / "table1.csv"
     file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
     spec = described({"kind": "transcribed", "published": "table1.csv"})
-    table = listing.table(spec, {"table1": str(file)}, {})
+    table = listing.build_table(spec, {"table1": str(file)}, {})
     assert table.to_csv(index=False) == file.read_text()
 
 
 def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
     file = tmp_path / "table2.csv"
     file.write_text("method,value\nplain,2.5\n")
-    table = listing.table(
+    table = listing.build_table(
         described({"kind": "function", "function": "twice"}),
         {"table2": str(file)},
         {"twice": lambda tables: 2 * tables["table2"][["value"]]},

@@ -67,7 +67,7 @@ def found() -> results.Results:
     bounds = problems.compute_bounds({"field": FIELD}, {}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
-    return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(
+    return results.join_bounds(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(
         jobs={"swarm": CHUNK}
     )
 
@@ -98,7 +98,7 @@ def test_ways_are_those_of_the_runs(found):
 
 
 def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
-    runs = found.runs.assign(group=metrics.values(found.runs, "homotopy", found.problems))
+    runs = found.runs.assign(group=metrics.compute_values(found.runs, "homotopy", found.problems))
     runs = runs.query("feasible")
     counts = runs["group"].value_counts()
     assert len(counts) == 2, "paths pass the circle on either side"

@@ -12,7 +12,7 @@ import starts
 from studies import study
 
 import bezierplan
-from bezierplan.analysis.run_tables import row_text
+from bezierplan.analysis.run_tables import format_row
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check
@@ -82,7 +82,7 @@ def run_again() -> str:
     """A run, as text, without the times."""
     made = replay.replay(RUN, {"song2016": study("song2016")})
     run = made.runs.iloc[0]
-    return row_text({name: value for name, value in run.to_dict().items() if name != "cpu_s"})
+    return format_row({name: value for name, value in run.to_dict().items() if name != "cpu_s"})
 
 
 def test_the_checker_and_a_run_answer_the_same_without_compilation():

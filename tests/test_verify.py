@@ -148,10 +148,12 @@ def test_each_edit_of_one_byte_is_named(tmp_path):
         place = draw.randrange(len(content))
         other = draw.choice([byte for byte in range(256) if byte != content[place]])
         file.write_bytes(content[:place] + bytes([other]) + content[place + 1 :])
-        listed = proof.listed(folder)
-        assert [fault.file for fault in proof.unlisted(folder, listed)] == [str(file)], place
+        listed = proof.read_list(folder)
+        assert [fault.file for fault in proof.find_changed_files(folder, listed)] == [str(file)], (
+            place
+        )
         file.write_bytes(content)
-    assert proof.unlisted(folder, proof.listed(folder)) == []
+    assert proof.find_changed_files(folder, proof.read_list(folder)) == []
 
 
 def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, tmp_path, capsys):

@@ -23,7 +23,7 @@ import trees
 import yaml
 from trees import EXPERIMENTS, edit, small
 
-from bezierplan.analysis.run_tables import run_tables, table_digest
+from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
 
 ROOT = Path(__file__).parents[1]
 # Those of the paper, and the baseline that all studies share.
@@ -54,7 +54,10 @@ def snakemake(tree, *words, check=True, **options):
 
 def digests(tree):
     """Digest of each run table of the tree's results at full scale, by name."""
-    return {name: table_digest(files) for name, files in run_tables(tree / "results/full").items()}
+    return {
+        name: compute_table_digest(files)
+        for name, files in list_run_tables(tree / "results/full").items()
+    }
 
 
 def planned(tree, *words):

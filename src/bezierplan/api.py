@@ -176,7 +176,7 @@ class Judgement:
 
     def _repr_html_(self) -> str:
         """Return the picture and what the command line prints, for notebooks."""
-        return drawn_path.html(answers.rows(self), self.plot)
+        return drawn_path.html(answers.write_html(self), self.plot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,7 +253,7 @@ class Comparison:
         """
         from bezierplan.analysis.numbers import benchmark
 
-        return benchmark.scores(benchmark.summaries(self.runs))
+        return benchmark.rank_methods(benchmark.compute_summaries(self.runs))
 
     def plot(self, axes: Axes | None = None, problem: str = "") -> Axes:
         """Draw the best path of each method on one map, with a legend: the shortest free one.
@@ -438,7 +438,7 @@ def check(problem: Problem, path: Path) -> Judgement:
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
     # The verdict is about the plain copy; the caller gets the path that was given.
-    return Judgement(**answers.verdict(*_bound(problem), plain) | {"path": path})
+    return Judgement(**answers.judge_path(*_bound(problem), plain) | {"path": path})
 
 
 def plan(
@@ -605,7 +605,9 @@ def _answer(
     answered: list[Answer] = []
     try:
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
-            judged = answers.verdict(run.problem, run.bound, plan.path) | answers.of_planner(plan)
+            judged = answers.judge_path(
+                run.problem, run.bound, plan.path
+            ) | answers.list_planner_fields(plan)
             # This checks our own geometry, not the planner.
             if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
                 raise ValueError(
@@ -843,9 +845,9 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
         If there are no such results, or they are damaged.
     """
     with require_extra():
-        from bezierplan.analysis.results import of_folder
+        from bezierplan.analysis.results import read_folder
 
-    return of_folder(File(folder), experiment).runs
+    return read_folder(File(folder), experiment).runs
 
 
 def replay(run: str) -> Answer:
@@ -877,7 +879,7 @@ def replay(run: str) -> Answer:
 
 def answer_of(rerun: Any, run: str) -> Answer:
     """Return the answer in the results of one run, by its name."""
-    return Answer(**answers.of_run(rerun, run))
+    return Answer(**answers.judge_run(rerun, run))
 
 
 def _draw_html(home: Problem | Workspace) -> str:

@@ -3,4 +3,4 @@
 from bezierplan.running.jobs import log
 
 with log.run_job(snakemake) as output:
-    snakemake.params.job.work(snakemake.input, output)
+    snakemake.params.job.run_recorded(snakemake.input, output)

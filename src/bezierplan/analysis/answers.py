@@ -25,8 +25,14 @@ OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int,
 """Fields that are the planner's own, beside the history."""
 
 
-def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None) -> dict[str, Any]:
-    """The fields of `api.Judgement` for a path, or for none. shortest: the exact shortest path."""
+def judge_path(
+    problem: Problem, shortest: shortest_paths.Bound, path: Path | None
+) -> dict[str, Any]:
+    """Judge a path with exact geometry and return the fields of `api.Judgement`; without a path,
+    those of the problem alone.
+
+    shortest: the exact shortest path.
+    """
     grown = find_growth(problem.workspace)
     fields: dict[str, Any] = {
         "problem": problem,
@@ -57,17 +63,17 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     }
 
 
-def of_planner(plan: Plan) -> dict[str, Any]:
+def list_planner_fields(plan: Plan) -> dict[str, Any]:
     """Return the fields of `api.Answer` that are the planner's own."""
     own = {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
     return own | {"turning_radius": plan.extra.get("least_radius", math.nan)}
 
 
-def of_run(results: Results, name: str) -> dict[str, Any]:
-    """The fields of `api.Answer` for the results of one run, by its name."""
+def judge_run(results: Results, name: str) -> dict[str, Any]:
+    """Read one run from its results, by its name, and return the fields of `api.Answer`."""
     row, (study, _, _, method, _) = results.runs.iloc[0], name.split("/")
     problem = results.problems[row["problem"]]
-    return verdict(
+    return judge_path(
         problem,
         shortest_paths.shortest_path(problem),
         restore_path(row["path_curve"], row["path_points"]),
@@ -80,8 +86,10 @@ def of_run(results: Results, name: str) -> dict[str, Any]:
     }
 
 
-def lines(answer: Any) -> dict[str, str]:
-    """What to print of an `api.Judgement` or an `api.Answer`, by name."""
+def describe_answer(answer: Any) -> dict[str, str]:
+    """Describe an `api.Judgement` or an `api.Answer`: a mapping from the name of each line to its
+    text, in the order in which they are printed.
+    """
     unit, words = answer.problem.workspace.unit, {}
     if method := getattr(answer, "method", ""):
         settings = ", ".join(f"{name} {value}" for name, value in answer.settings.items())
@@ -92,23 +100,26 @@ def lines(answer: Any) -> dict[str, str]:
     if answer.path is None:
         words["path"] = f"none ({answer.stop})"
     else:
-        words |= _of_path(answer, unit)
+        words |= _describe_path(answer, unit)
     if not math.isnan(seconds := getattr(answer, "cpu_s", math.nan)):
         words["CPU time"] = f"{seconds:.3g} s"
     return words
 
 
-def rows(answer: Any) -> str:
-    """Return `lines` as a table of HTML."""
-    lined = lines(answer).items()
+def write_html(answer: Any) -> str:
+    """Write the lines of `describe_answer` as a table of HTML."""
+    lined = describe_answer(answer).items()
     return f"<table>{''.join(f'<tr><th>{name}<td>{escape(text)}' for name, text in lined)}</table>"
 
 
-def _of_path(answer: Any, unit: str) -> dict[str, str]:
+def _describe_path(answer: Any, unit: str) -> dict[str, str]:
+    """Describe the path of an answer: a mapping from the name of each line to its text. unit: of
+    the workspace.
+    """
     corners = ", and corners" if answer.corners else ""
     words = {
         "length": f"{answer.length:.6g} {unit}",
-        "curvature": f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}",
+        "curvature": f"at most {_format_number(answer.curvature, 6)} / {unit} at samples{corners}",
     }
     radius = getattr(answer, "turning_radius", math.nan)
     if not math.isnan(radius):
@@ -116,9 +127,11 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
         kept = math.isinf(asked) or planning.is_radius_kept(asked, radius)
         less = "" if kept else f"; no room for {asked:.6g} {unit}"
         words["turning radius"] = f"{radius:.6g} {unit}{less}"
-    words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
+    words["clearance"] = f"{_format_number(answer.clearance, 6)} {unit}"
     if answer.feasible:
-        words["length"] += f", {_digits(100 * max(answer.gap, 0.0), 3)} % above the shortest path"
+        words["length"] += (
+            f", {_format_number(100 * max(answer.gap, 0.0), 3)} % above the shortest path"
+        )
         words["feasible"] = "yes"
     else:
         x, y = answer.collision
@@ -128,6 +141,8 @@ def _of_path(answer: Any, unit: str) -> dict[str, str]:
     return words
 
 
-def _digits(value: float, digits: int) -> str:
-    """A number with some digits; 0 within the tolerance of free paths, where it says nothing."""
+def _format_number(value: float, digits: int) -> str:
+    """Format a number with some significant digits. Below the tolerance of free paths digits mean
+    nothing, so it is 0.
+    """
     return f"{value:.{digits}g}" if abs(value) > robot.TOLERANCE else "0"

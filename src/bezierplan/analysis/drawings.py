@@ -7,8 +7,8 @@ from typing import Any
 import pandas as pd
 
 
-def marks(*sources: Any) -> pd.DataFrame:
-    """The marks of a drawing, a row each, or a row for each point of a line or arrow.
+def list_marks(*sources: Any) -> pd.DataFrame:
+    """List the marks of a drawing, a row each, or a row for each point of a line or arrow.
 
     sources: the workspace over which they are drawn, if any, and the file of the drawing by name.
     """

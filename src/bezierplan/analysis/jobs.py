@@ -32,7 +32,7 @@ from bezierplan.workspaces.kinds import modules_of
 
 @dataclass(frozen=True)
 class Job(ABC):
-    """What a job is made of.
+    """One step of the workflow: its fields are all that it depends on, `run` is the work.
 
     shows: experiment, or study/experiment -> method -> number of chunks: the results that it reads,
     in the order of its input files. sources: other files that it reads, of the folder of a study.
@@ -53,16 +53,18 @@ class Job(ABC):
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
 
     def __str__(self) -> str:
-        """For reports, whose readers' browsers must not run words of a study."""
+        """Return the name of the class, for reports, whose readers' browsers must not run words of
+        a study.
+        """
         return type(self).__name__
 
-    def modules(self) -> Iterable[str]:
-        """Modules that `run` imports by name, because of the values."""
+    def list_modules(self) -> Iterable[str]:
+        """List the modules that `run` imports by name, because of the values."""
         return self.code
 
-    def work(self, input_files: Any, output_files: Any) -> None:
-        """Run, and keep which files the code of a study opens meanwhile."""
-        files = [name for name in self.modules() if is_file(name)]
+    def run_recorded(self, input_files: Any, output_files: Any) -> None:
+        """Run the job, and keep which files the code of a study opens meanwhile."""
+        files = [name for name in self.list_modules() if is_file(name)]
         if files:
             opened.watch()
         self.run(input_files, output_files)
@@ -71,28 +73,29 @@ class Job(ABC):
 
     @cached_property
     def account(self) -> dict[str, str]:
-        """What the job's files follow from, by name: digests of its values (settings), of the code
-        that works and of its sources, and the versions of libraries that compute. Objects that have
-        the same text are the same; where files lie does not count.
+        """Return what the job's files follow from, by name: digests of its values (settings), of
+        the code that works and of its sources, and the versions of libraries that compute.
+
+        Objects that have the same text are the same; where files lie does not count.
         """
         names = [each.name for each in fields(self) if each.name not in ("sources", "folder")]
         text = repr([(name, getattr(self, name)) for name in names])
         works = type(self).run, type(self).write
         return (
             {"settings": hashlib.sha256(text.encode()).hexdigest()[:16]}
-            | describe_code(works, *sorted(set(self.modules())))
+            | describe_code(works, *sorted(set(self.list_modules())))
             | {"sources": compute_content_digest(*self.sources)}
         )
 
     @cached_property
     def key(self) -> str:
-        """The digest of the account."""
+        """Return the digest of the account."""
         return hashlib.sha256(repr(self.account).encode()).hexdigest()[:16]
 
     @property
     def grounds(self) -> dict[str, str]:
-        """The account by which a job runs again: with those files that have changed since the code
-        of a study first opened them. Before its first run nobody knows them.
+        """Return the account by which a job runs again: with those files that have changed since
+        the code of a study first opened them. Before its first run nobody knows them.
         """
         first = opened.read_kept(self.key)
         now = opened.hash_contents(first)
@@ -106,8 +109,8 @@ class Problems(Job):
     descriptions: Descriptions
     folder: str
 
-    def modules(self):
-        """Those of the kinds of workspace."""
+    def list_modules(self):
+        """List the modules of the kinds of workspace."""
         return modules_of(self.descriptions.workspaces)
 
     def run(self, input_files, output_files):
@@ -120,12 +123,12 @@ class Problems(Job):
 
 @dataclass(frozen=True)
 class Bounds(Job):
-    """The exact shortest path of each problem of an experiment; of drives, what no robot can
-    beat.
+    """The exact shortest path of each problem of an experiment; for drives, the least that no robot
+    can beat.
     """
 
     def run(self, input_files, output_files):
-        """Compute the bounds."""
+        """Compute the bounds of all problems."""
         from bezierplan.running import problems, rows
 
         table = problems.compute_bounds(*problems.read(input_files.problems))
@@ -138,8 +141,8 @@ class Runs(Job):
 
     chunk: Chunk
 
-    def modules(self):
-        """The planner."""
+    def list_modules(self):
+        """List the module of the planner."""
         return [name_module(self.chunk.planner)]
 
     def run(self, input_files, output_files):
@@ -165,7 +168,7 @@ class Recheck(Job):
     chunks: list[Chunk]
 
     def run(self, input_files, output_files):
-        """Judge the runs."""
+        """Judge the runs again from their rows. Raises an error unless all are sound."""
         from bezierplan.running import recheck
 
         files = dict(zip(input_files.runs, self.chunks, strict=True))
@@ -195,13 +198,13 @@ class TableOfRuns(Job):
     repeats: int
 
     def run(self, input_files, output_files):
-        """Make the table and its comparison."""
+        """Make the table and its comparison with published numbers."""
 
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.numbers import comparison, tables, wholes
         from bezierplan.running import inputs
 
-        study_code.functions(self.code)
+        study_code.load_functions(self.code)
         ((experiment, files),) = inputs.group_by_experiment(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
         file = input_files.sources[0] if self.sources else None
@@ -216,14 +219,14 @@ class TableOfRuns(Job):
             self.reconstructed,
             self.fitted,
         )
-        table = tables.pivot(runs, self.spec, self.labels, published)
+        table = tables.build_pivot(runs, self.spec, self.labels, published)
         table.to_csv(output_files.table, lineterminator="\n")
         if self.spec.printed:
             compared = compared[compared["value_published"].notna()]
             placed = compared.dropna(subset="table_row")
-            printed = tables.laid(placed, placed["as_printed"], table.index, table.columns)
+            printed = tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
             printed.to_csv(output_files.published, lineterminator="\n")
-            columns = wholes.of_table(runs, self.spec, compared, self.name, self.paired)
+            columns = wholes.compare_columns(runs, self.spec, compared, self.name, self.paired)
             self.write(columns, output_files.wholes)
         self.write(compared, output_files.comparison)
 
@@ -236,16 +239,16 @@ class TableWithoutRuns(Job):
     """Without its title."""
 
     def run(self, input_files, output_files):
-        """Make the table."""
+        """Build the table from published numbers or by a function."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.numbers import listing
         from bezierplan.running import inputs
 
         published, functions = (
             inputs.group_by_table(input_files.sources),
-            study_code.functions(self.code),
+            study_code.load_functions(self.code),
         )
-        self.write(listing.table(self.spec, published, functions), output_files[0])
+        self.write(listing.build_table(self.spec, published, functions), output_files[0])
 
 
 @dataclass(frozen=True)
@@ -258,8 +261,8 @@ class Claims(Job):
     readings: dict[str, str]
     """By name, what each joint reading changes, in words; in the order of their files."""
 
-    def modules(self):
-        """Kinds of check as well."""
+    def list_modules(self):
+        """List the study's own modules and those of the kinds of check."""
         kinds = {check.test for claim in self.study.claims for check in claim.checks}
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
@@ -274,10 +277,10 @@ class Claims(Job):
         material = Material(
             self.study,
             results.read_all(inputs.group_by_experiment(self.shows, input_files), self.repeats),
-            results.published_tables(input_files.sources),
-            study_code.functions(self.code),
+            results.read_published_tables(input_files.sources),
+            study_code.load_functions(self.code),
         )
-        judged, checks = judge.judge(material)
+        judged, checks = judge.judge_claims(material)
         self.write(checks, output_files.checks)
         if not hasattr(output_files, "by_reading"):  # the claims of a reading
             self.write(judged, output_files.claims)
@@ -288,11 +291,13 @@ class Claims(Job):
                 self.readings, input_files.readings, input_files.checks, strict=True
             )
         }
-        names = sentences.variants_named(self.study.claims, self.study.labels)
-        told = by_reading.with_dependence(judged, under, self.readings, names)
+        names = sentences.name_variants(self.study.claims, self.study.labels)
+        told = by_reading.add_dependence(judged, under, self.readings, names)
         self.write(told, output_files.claims)
         default = {by_reading.DEFAULT: by_reading.ClaimTables(judged, checks)}
-        self.write(by_reading.by_check(self.study.claims, default | under), output_files.by_reading)
+        self.write(
+            by_reading.list_checks(self.study.claims, default | under), output_files.by_reading
+        )
 
 
 @dataclass(frozen=True)
@@ -306,15 +311,15 @@ class Audit(Job):
     """Those whose maps are."""
 
     def run(self, input_files, output_files):
-        """Check the numbers."""
+        """Check the printed numbers against each other and against bounds."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.audit import audit
         from bezierplan.running import inputs
 
-        study_code.functions(self.code)
-        table = audit.audited(
+        study_code.load_functions(self.code)
+        table = audit.check_paper(
             self,
-            study_code.audit(self.code),
+            study_code.load_audit(self.code),
             inputs.group_by_experiment(self.shows, input_files),
             inputs.group_by_table(input_files.sources),
         )
@@ -347,7 +352,7 @@ class MethodsTable(Job):
             study: {name: methods.Family(**each) for name, each in own.items()}
             for study, own in self.families.items()
         }
-        table = methods.of_studies(self.proposed, families, by_place)
+        table = methods.measure_studies(self.proposed, families, by_place)
         table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
@@ -359,12 +364,12 @@ class Summary(Job):
     """Study and table of each comparison with published numbers, in order."""
 
     def run(self, input_files, output_files):
-        """Gather them."""
+        """Gather the numbers and claims of all studies."""
         from bezierplan.analysis import study_code
         from bezierplan.analysis.outcome import summary
 
-        study_code.functions(self.code)
-        summed = summary.gathered(
+        study_code.load_functions(self.code)
+        summed = summary.gather(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
             list(input_files.wholes),
             list(input_files.claims),
@@ -375,7 +380,7 @@ class Summary(Job):
 
 @dataclass(frozen=True)
 class Verification(Job):
-    """What was judged again of all that the page shows, and the digest of every file, with the
+    """The verdicts of all rechecks on what the page shows, and the digest of every file, with the
     account of the job that makes it.
     """
 
@@ -387,7 +392,7 @@ class Verification(Job):
     """Files below it, with the key and the account of the job that makes them."""
 
     def run(self, input_files, output_files):
-        """List the files."""
+        """List all files with their digests and the accounts of their jobs."""
         import json
 
         from bezierplan.analysis.outcome import proof
@@ -399,7 +404,7 @@ class Verification(Job):
         )
         content = recheck.check_sound(verdict) | {
             "digest": verdict.digest,
-            "made_by": proof.made_by(),
+            "made_by": proof.describe_version(),
             "versions": recheck.read_versions(),
             "studies": self.studies,
             "accounts": [

@@ -8,8 +8,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def table_text(table: pd.DataFrame) -> str:
-    """A table as markdown, its index first."""
+def write_table(table: pd.DataFrame) -> str:
+    """Write a table as markdown, its index first."""
     rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
     rows += [
         [name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)
@@ -19,8 +19,8 @@ def table_text(table: pd.DataFrame) -> str:
     )
 
 
-def escaped(text: str) -> str:
-    """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
+def escape(text: str) -> str:
+    """Escape text as one line of literal reStructuredText: no markup, no directive, no HTML."""
     return "".join(
         f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
         for sign in " ".join(text.split())

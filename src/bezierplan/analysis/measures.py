@@ -32,8 +32,10 @@ CORNER = 1e-6
 ROUNDED = 0.01
 
 
-def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) the planner's own test gives this result and the checker the opposite."""
+def find_disagreements(
+    claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]
+) -> np.ndarray:
+    """Return where (n,) the planner's own test gives this result and the checker the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
 
 
@@ -45,16 +47,16 @@ def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -
     step=0.5,
 )
 def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; ties share
+    """Rank the objective within one unit (n,), among methods or numbers of obstacles; ties share
     the mean of their ranks.
     """
     unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
     return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
 
-def reference(runs: pd.DataFrame) -> pd.Series:
-    """The length of the best known path of each run's problem. Raises ValueError if it is shorter
-    than the exact shortest path.
+def read_reference(runs: pd.DataFrame) -> pd.Series:
+    """Return the length of the best known path of each run's problem. Raises ValueError if it is
+    shorter than the exact shortest path.
     """
     too_short = runs["reference"] < (1 - ROUNDED) * runs.get("bound", np.nan)
     if too_short.any():
@@ -66,9 +68,9 @@ def reference(runs: pd.DataFrame) -> pd.Series:
     return runs["reference"]
 
 
-def held_history(runs: pd.DataFrame) -> np.ndarray:
-    """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early
-    hold their last value.
+def extend_histories(runs: pd.DataFrame) -> np.ndarray:
+    """Extend the best objective so far to equal numbers of generations: (runs, maximum generations
+    + 1). Runs that stopped early hold their last value.
     """
     lengths = runs["history"].map(len).to_numpy()
     starts = np.cumsum(lengths) - lengths
@@ -76,24 +78,24 @@ def held_history(runs: pd.DataFrame) -> np.ndarray:
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
-def first_generation_within(
+def find_first_generation(
     share: float, runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> np.ndarray:
-    """First generation (n,) whose best objective so far is at most 1 + share times the final
-    one.
+    """Find the first generation (n,) whose best objective so far is at most 1 + share times the
+    final one.
     """
-    held = held_history(runs)
+    held = extend_histories(runs)
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
 @metric("-", "length / exact shortest length of the problem - 1", feasible_only=True, least=0.0)
 def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Length over the exact shortest length, minus 1 (n,)."""
+    """Compute the length over the exact shortest length, minus 1 (n,)."""
     return runs["length"] / runs["bound"] - 1
 
 
-def near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) the certified checker accepts a path and it is at most this share longer than
+def is_near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Return where (n,) the certified checker accepts a path that is at most this share longer than
     the exact shortest one.
     """
     return (certified_length(runs, problems) <= (1 + share) * runs["bound"]).to_numpy()
@@ -103,7 +105,7 @@ def near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]
     "u", "exact arc length, infinite unless the certified checker accepts the path", least="bound"
 )
 def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """The length (n,) of a path that the certified checker accepts, infinite for any other."""
+    """Return the length (n,) of a path that the certified checker accepts, else infinity."""
     return np.where(runs["feasible"].astype(bool), runs["length"], np.inf)
 
 
@@ -115,8 +117,8 @@ def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.nda
     needs=("arrival",),
 )
 def paired_gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """The gap of the arrival (n,) of the runs in whose condition and repeat all methods among the
-    runs have a feasible one; NaN of others.
+    """Compute the gap of the arrival (n,) of the runs in whose condition and repeat all methods
+    among the runs have a feasible one; NaN for the others.
     """
     arrived = runs["method"].where(runs["feasible"].astype(bool))
     together = arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique")
@@ -124,15 +126,15 @@ def paired_gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -
     return late.where(together == runs["method"].nunique())
 
 
-def samples_of(path: Path, count: int) -> np.ndarray:
-    """Points (count, 2) along a path."""
+def sample_path(path: Path, count: int) -> np.ndarray:
+    """Sample points (count, 2) along a path."""
     from bezierplan.geometry import curves
 
     return curves.sample_matrix(path.curve, len(path.points), count) @ path.points
 
 
-def curvature_samples(path: Path) -> np.ndarray:
-    """Curvature of `CURVATURE_SAMPLES` samples, NaN where the speed is zero."""
+def sample_curvature(path: Path) -> np.ndarray:
+    """Sample the curvature of a path at `CURVATURE_SAMPLES` values, NaN where the speed is zero."""
     from bezierplan.geometry import curves
 
     return curves.curvature(path, CURVATURE_SAMPLES)[0]
@@ -143,70 +145,74 @@ def curvature_samples(path: Path) -> np.ndarray:
     f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",
 )
 def max_curvature(path: Path) -> float:
-    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where
-    the speed is zero.
+    """Return the largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as
+    0 where the speed is zero.
     """
-    return float(np.nan_to_num(np.abs(curvature_samples(path))).max())
+    return float(np.nan_to_num(np.abs(sample_curvature(path))).max())
 
 
 @of_path(
     "1/u", "bending energy: integral of the squared curvature along the path, corners left out"
 )
 def bending_energy(path: Path) -> float:
-    """The integral of the squared curvature over the arc length, in 1/unit, by the trapezoidal rule
-    over `CURVATURE_SAMPLES` samples; curvature counts as 0 where the speed is zero.
+    """Integrate the squared curvature over the arc length, in 1/unit, by the trapezoidal rule over
+    `CURVATURE_SAMPLES` samples; curvature counts as 0 where the speed is zero.
     """
-    squared = np.nan_to_num(curvature_samples(path)) ** 2
-    steps = np.hypot(*np.diff(samples_of(path, CURVATURE_SAMPLES), axis=0).T)
+    squared = np.nan_to_num(sample_curvature(path)) ** 2
+    steps = np.hypot(*np.diff(sample_path(path, CURVATURE_SAMPLES), axis=0).T)
     return float(((squared[1:] + squared[:-1]) / 2 * steps).sum())
 
 
 @of_path("1/u", "largest jump of curvature over the joints, infinite at a corner")
 def curvature_jump(path: Path) -> float:
-    """Largest jump of curvature over a path's joints, in 1/unit."""
+    """Return the largest jump of curvature over a path's joints, in 1/unit."""
     from bezierplan.geometry import curves
 
     return curves.curvature_jump(path)
 
 
-def steps_of(points: np.ndarray) -> np.ndarray:
-    """Steps (m, 2) between points (n, 2), those of length 0 left out."""
+def list_steps(points: np.ndarray) -> np.ndarray:
+    """List the steps (m, 2) between points (n, 2) but for those of length 0."""
     steps = np.diff(points, axis=0)
     return steps[np.hypot(*steps.T) > 0]
 
 
-def headings(steps: np.ndarray) -> np.ndarray:
-    """Absolute changes of heading (n - 1,), in radians, between steps (n, 2)."""
+def compute_heading_changes(steps: np.ndarray) -> np.ndarray:
+    """Compute the absolute changes of heading (n - 1,), in radians, between steps (n, 2)."""
     cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
     return np.abs(np.arctan2(cross, (steps[:-1] * steps[1:]).sum(axis=1)))
 
 
-def path_headings(path: Path) -> np.ndarray:
-    """Changes of heading along a path; a curve is taken as chords between samples."""
+def measure_heading_changes(path: Path) -> np.ndarray:
+    """Measure the changes of heading along a path, in radians; a curve is taken as chords between
+    samples.
+    """
     is_polyline = path.curve == "polyline"
-    return headings(steps_of(path.points if is_polyline else samples_of(path, HEADING_SAMPLES)))
+    return compute_heading_changes(
+        list_steps(path.points if is_polyline else sample_path(path, HEADING_SAMPLES))
+    )
 
 
 @of_path("rad", "changes of heading, all added")
 def turning(path: Path) -> float:
-    """Sum of all changes of heading, in radians."""
-    return float(path_headings(path).sum())
+    """Sum all changes of heading, in radians."""
+    return float(measure_heading_changes(path).sum())
 
 
 @of_path("-", "joints of a path's pieces at which its heading changes", step=1.0)
 def corners(path: Path) -> int:
-    """Joints of a path's pieces at which its heading changes."""
+    """Count the joints of a path's pieces at which its heading changes."""
     from bezierplan.geometry import curves
 
-    legs = [steps for steps in map(steps_of, curves.bezier_pieces(path)) if len(steps)]
+    legs = [steps for steps in map(list_steps, curves.bezier_pieces(path)) if len(steps)]
     return sum(
-        int(headings(np.array([one[-1], other[0]]))[0] > CORNER)
+        int(compute_heading_changes(np.array([one[-1], other[0]]))[0] > CORNER)
         for one, other in itertools.pairwise(legs)
     )
 
 
-def free_cells(path: Path, grid: Grid) -> int | None:
-    """Number of cells that a path touches; None if one of them is occupied."""
+def count_free_cells(path: Path, grid: Grid) -> int | None:
+    """Count the cells that a path touches; None if one of them is occupied."""
     from bezierplan.geometry import cell_length
 
     columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
@@ -221,14 +227,16 @@ def free_cells(path: Path, grid: Grid) -> int | None:
     step=1.0,
 )
 def cells(path: Path, grid: Grid) -> float:
-    """Number of cells that a path touches; NaN for one that touches an occupied cell."""
-    free = free_cells(path, grid)
+    """Count the cells that a path touches; NaN for one that touches an occupied cell."""
+    free = count_free_cells(path, grid)
     return np.nan if free is None else float(free)
 
 
 @metric("-", "whether an obstacle is in the way, so that no straight line is free", step=1.0)
 def blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) the exact shortest path of a run's problem is longer than the straight line."""
+    """Return where (n,) the exact shortest path of a run's problem is longer than the straight
+    line.
+    """
     straight = {
         name: np.hypot(*np.subtract(each.start, each.target)) for name, each in problems.items()
     }

@@ -80,6 +80,7 @@ class Metrics(dict[str, Metric]):
     """
 
     def __missing__(self, name: str) -> Metric:
+        """Return the metric of a column of the runs table that has no own one."""
         return Metric("-", name.replace("_", " "))
 
 
@@ -92,20 +93,20 @@ ALL_STUDIES: set[str] = set()
 
 
 def register(functions: dict[str, Metric]) -> None:
-    """Add metrics. Raises ValueError for a name of every study's."""
+    """Add metrics to `METRICS`. Raises ValueError for a name of every study's."""
     for name in ALL_STUDIES.intersection(functions):
         raise ValueError(f"metric {name}: every study has one of this name; choose another")
     METRICS.update(functions)
 
 
-def count(meaning: str, compute: Compute | None = None, **more: Any) -> Metric:
-    """A count of every run, or whether something is true of it: 1 or 0."""
+def build_count(meaning: str, compute: Compute | None = None, **more: Any) -> Metric:
+    """Build the metric of a count of every run, or of something that is true of it: 1 or 0."""
     return Metric("-", meaning, compute, step=1.0, **more)
 
 
-def of_column(name: str, **more: Any) -> Metric:
-    """A column that every table of runs, of drives or of their bounds and times has: unit and
-    meaning are those of the column.
+def build_column_metric(name: str, **more: Any) -> Metric:
+    """Build the metric of a column that every table of runs, of drives or of their bounds and times
+    has; unit and meaning are those of the column.
     """
     values, column = COLUMNS[name]
     unit = {"units": "u", "": "-"}.get(column.unit, column.unit)
@@ -113,8 +114,8 @@ def of_column(name: str, **more: Any) -> Metric:
     return Metric(unit, column.meaning, **whole, **more)
 
 
-def generation(meaning: str, compute: Compute) -> Metric:
-    """The number of a generation of every run."""
+def build_generation(meaning: str, compute: Compute) -> Metric:
+    """Build the metric of the number of a generation of every run."""
     return Metric("generation", meaning, compute, least=0.0, step=1.0)
 
 
@@ -127,56 +128,64 @@ def metric(
     adapter: Callable[[F], Compute] = lambda function: function,
     **facts: Any,
 ) -> Callable[[F], F]:
-    """A decorator: the function is the metric of its own name. facts: of `Metric`. adapter: makes
-    it one of (runs, problems).
+    """Return a decorator that makes a function the metric of its own name.
+
+    facts: fields of `Metric`. adapter: turns the function into one of (runs, problems).
     """
 
-    def declared(function: F) -> F:
+    def register_function(function: F) -> F:
         own = not function.__module__.startswith("bezierplan.")
         metric = Metric(unit, meaning, adapter(function), **facts, own=own)
         register({function.__name__: metric})
         return function
 
-    return declared
+    return register_function
 
 
 def of_path(unit: str, meaning: str, **facts: Any) -> Callable[[F], F]:
-    """Likewise of a measure of a path; of feasible runs unless said otherwise."""
+    """Return a decorator like `metric` for a measure of a path; over feasible runs unless said
+    otherwise.
+    """
 
-    def adapted(measure: Callable[[Path], float]) -> Compute:
-        return lambda runs, _: of_paths([measure] * len(runs), runs)
+    def apply_to_runs(measure: Callable[[Path], float]) -> Compute:
+        return lambda runs, _: measure_paths([measure] * len(runs), runs)
 
-    return metric(unit, meaning, adapted, **{"feasible_only": True} | facts)
+    return metric(unit, meaning, apply_to_runs, **{"feasible_only": True} | facts)
 
 
 def on_map(unit: str, meaning: str, *kinds: str, **facts: Any) -> Callable[[F], F]:
-    """Likewise of a measure of a path and its workspace, of one of some kinds, of feasible runs."""
+    """Return a decorator like `metric` for a measure of a path and its workspace, over feasible
+    runs. kinds: of workspace, for which it is defined.
+    """
     facts |= {"feasible_only": True, "on": kinds}
-    return metric(unit, meaning, lambda measure: partial(on_maps, measure), **facts)
+    return metric(unit, meaning, lambda measure: partial(measure_on_maps, measure), **facts)
 
 
-def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
-    """For each run, its own measure of its path; NaN where the run has none. Equal measures of
+def measure_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
+    """Measure each run's path by its own measure; NaN where the run has none. Equal measures of
     equal paths are taken once.
     """
     given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
     return [
-        _measured(measure, curve, np.asarray(points, dtype=float).tobytes())
+        _measure_path(measure, curve, np.asarray(points, dtype=float).tobytes())
         for measure, curve, points in given
     ]
 
 
 @lru_cache(MEASURES_KEPT)
-def _measured(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
+def _measure_path(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
+    """Measure a path, given by its curve kind and the bytes of its points, by which results are
+    remembered.
+    """
     from bezierplan.workspaces.problem import Path
 
     return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
 
 
-def on_maps(
+def measure_on_maps(
     measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> list[float]:
-    """A measure of each run's path in its workspace; NaN where the run has none."""
+    """Measure each run's path in its workspace; NaN where the run has none."""
     from bezierplan.workspaces.problem import Path
 
     return [

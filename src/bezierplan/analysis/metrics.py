@@ -15,7 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis import measures
-from bezierplan.analysis.metric import ALL_STUDIES, METRICS, Metric, count, generation, of_column
+from bezierplan.analysis.metric import (
+    ALL_STUDIES,
+    METRICS,
+    Metric,
+    build_column_metric,
+    build_count,
+    build_generation,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,8 +30,8 @@ if TYPE_CHECKING:
     from bezierplan.workspaces.problem import Problem
 
 
-def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
-    """A metric of each run.
+def compute_values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
+    """Compute a metric of each run.
 
     Parameters
     ----------
@@ -76,12 +83,12 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
 
 
 def add_columns(names: Iterable[str]) -> None:
-    """Make metrics of columns that planners report and that are none yet."""
+    """Add metrics of columns that planners report and that are none yet."""
     METRICS.update({name: METRICS[name] for name in names if name not in METRICS})
 
 
-def unit(name: str, workspace_unit: str) -> str:
-    """The unit of a metric in a workspace.
+def find_unit(name: str, workspace_unit: str) -> str:
+    """Return the unit of a metric in a workspace.
 
     Parameters
     ----------
@@ -128,52 +135,55 @@ AT_LEAST_0 = (
 )
 
 METRICS |= {
-    "length": of_column("length", feasible_only=True, least="bound"),
-    "arrival": of_column("arrival", feasible_only=True, least=0.0),
+    "length": build_column_metric("length", feasible_only=True, least="bound"),
+    "arrival": build_column_metric("arrival", feasible_only=True, least=0.0),
 }
-METRICS |= {name: of_column(name) for name in OF_COLUMNS}
-METRICS |= {name: of_column(name, least=0.0) for name in AT_LEAST_0}
+METRICS |= {name: build_column_metric(name) for name in OF_COLUMNS}
+METRICS |= {name: build_column_metric(name, least=0.0) for name in AT_LEAST_0}
 METRICS |= {
-    "failed": count(
+    "failed": build_count(
         "without a path that the certified checker accepts",
         lambda runs, _: ~runs["feasible"].astype(bool),
     ),
-    "falsely_claimed": count(
+    "falsely_claimed": build_count(
         "free by the planner's own test, colliding by the checker's",
-        partial(measures.disagrees, True),
+        partial(measures.find_disagreements, True),
     ),
-    "wrongly_rejected": count(
-        "free by the checker's test, not by the planner's own", partial(measures.disagrees, False)
+    "wrongly_rejected": build_count(
+        "free by the checker's test, not by the planner's own",
+        partial(measures.find_disagreements, False),
     ),
-    "generation_improved": generation(
+    "generation_improved": build_generation(
         "last generation that improved the objective",
-        partial(measures.first_generation_within, 0.0),
+        partial(measures.find_first_generation, 0.0),
     ),
-    "generation_1pct": generation(
+    "generation_1pct": build_generation(
         "first generation within 1 % of the run's final objective",
-        partial(measures.first_generation_within, 0.01),
+        partial(measures.find_first_generation, 0.01),
     ),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind"),
-    "optimal": count("whether the final path is feasible and optimal, by the planner's own test"),
-    "infeasible": count("whether the final path is infeasible, by the planner's own test"),
+    "optimal": build_count(
+        "whether the final path is feasible and optimal, by the planner's own test"
+    ),
+    "infeasible": build_count("whether the final path is infeasible, by the planner's own test"),
     "gap_reference": Metric(
         "-",
         "length / length of the best known path of the same kind - 1",
-        lambda runs, _: runs["length"] / measures.reference(runs) - 1,
+        lambda runs, _: runs["length"] / measures.read_reference(runs) - 1,
         feasible_only=True,
         needs=("reference",),
     ),
-    "collided": count(
+    "collided": build_count(
         "whether the robot is in an obstacle at any time",
         lambda runs, _: runs["collision_at"].notna(),
     ),
 }
 
 for _percent in (1, 2, 5, 10):
-    METRICS[f"within_{_percent}pct"] = count(
+    METRICS[f"within_{_percent}pct"] = build_count(
         f"whether the path is certified and at most {_percent} % longer than the exact shortest "
         "one",
-        partial(measures.near_shortest, _percent / 100),
+        partial(measures.is_near_shortest, _percent / 100),
     )
 
 ALL_STUDIES.update(METRICS)

@@ -8,49 +8,49 @@ from typing import Any
 _WORDS = ("unit", "cell", "step", "generation")
 
 
-def amount(number: str, unit: str) -> str:
-    """A number, as printed, with its unit.
+def format_amount(number: str, unit: str) -> str:
+    """Format a number, as printed, with its unit.
 
-    >>> amount("1", "cell"), amount("21.83", "cell"), amount("0.5", "m")
-    ('1 cell', '21.83 cells', '0.5 m')
+    >>> [format_amount(*each) for each in (("1", "cell"), ("21.83", "cell"), ("0.5", "m"))]
+    ['1 cell', '21.83 cells', '0.5 m']
     """
     one = abs(float(number.replace(",", ""))) == 1
     return f"{number} {unit}{'s' if unit in _WORDS and not one else ''}"
 
 
-def number(value: float, digits: int = 3) -> str:
-    """Return a number to some significant digits, without an exponent.
+def format_number(value: float, digits: int = 3) -> str:
+    """Format a number with some significant digits, without an exponent.
 
-    >>> number(0.12345), number(12345.6, 2)
+    >>> format_number(0.12345), format_number(12345.6, 2)
     ('0.123', '12,000')
     """
     return f"{float(f'{value:.{digits}g}'):,.10g}"
 
 
-def count(number: int, noun: str) -> str:
-    """Return how many things there are, in words.
+def format_count(number: int, noun: str) -> str:
+    """Format how many things there are, in words.
 
-    >>> count(1, "claim"), count(3, "claim")
+    >>> format_count(1, "claim"), format_count(3, "claim")
     ('1 claim', '3 claims')
     """
     return f"{number} {noun}{'s' if number != 1 else ''}"
 
 
-def printed(value: Any, column: str, labels: Mapping[str, str]) -> str:
-    """How a value of a column is printed: as its label, or a number after the column's label."""
+def format_value(value: Any, column: str, labels: Mapping[str, str]) -> str:
+    """Format a value of a column: as its label, or a number after the column's label."""
     if isinstance(value, str):
         return labels.get(value, value)
     name = f"{value:g}"
-    return labels.get(name, f"{column_name(column, labels)} = {name}")
+    return labels.get(name, f"{name_column(column, labels)} = {name}")
 
 
-def column_name(column: str, labels: Mapping[str, str]) -> str:
-    """How a column or a metric is printed."""
+def name_column(column: str, labels: Mapping[str, str]) -> str:
+    """Name a column or a metric as printed."""
     return labels.get(column, column.replace("_", " "))
 
 
-def heading(name: str) -> str:
-    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure
+def format_heading(name: str) -> str:
+    """Format the name of a table or figure: `table3` as Table 3, `figure_gallery` as Figure
     gallery.
     """
     words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))

@@ -38,26 +38,26 @@ class Results(NamedTuple):
 
 
 def read(files: Files, repeats: int, experiment: str) -> Results:
-    """The results of an experiment, up to a number of repeats.
+    """Read the results of an experiment, up to a number of repeats.
 
     Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError,
     naming the run, if a feasible path is shorter than the shortest path, or a drive arrives before
     any robot can: then the checker or the bound is wrong; and naming the file, if one is damaged or
     not in its place.
     """
-    table = pd.concat(_chunks(files.runs, experiment), ignore_index=True)
+    table = pd.concat(_read_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
     known, bounded = row_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
     for file, rows in ((files.problems, known), (files.bounds, bounded)):
         if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
             raise row_files.describe_misplaced(file, "not of the problems that the runs are of")
     problems, moving = problem_files.read(files.problems)
-    return joined(table, problems, bounded)._replace(worlds=moving)
+    return join_bounds(table, problems, bounded)._replace(worlds=moving)
 
 
-def of_folder(folder: FilePath, experiment: str) -> Results:
-    """The results of an experiment of a study, in the study's folder at a scale. Raises ValueError
-    as `read` does, and if there are none.
+def read_folder(folder: FilePath, experiment: str) -> Results:
+    """Read the results of an experiment of a study from the study's folder at a scale. Raises
+    ValueError as `read` does, and if there are none.
     """
     runs: dict[str, list[str]] = {}
     for chunk in find_chunk_files(folder, "runs/*/*/*.parquet"):
@@ -70,9 +70,9 @@ def of_folder(folder: FilePath, experiment: str) -> Results:
     return read(files, 10**9, experiment)
 
 
-def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.DataFrame]:
-    """The rows of each chunk file with their times. Raises ValueError for a file that is not the
-    one that belongs in its place, or lacks a declared column.
+def _read_chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.DataFrame]:
+    """Yield the rows of each chunk file with their times. Raises ValueError for a file that is not
+    the one that belongs in its place, or lacks a declared column.
     """
     seen: set[str] = set()
     for method, chunks in files.items():
@@ -100,8 +100,8 @@ _DRIVEN = {"runs": "arrival", "times": "replan_mean_s", "bounds": "least_arrival
 
 
 def _read(file: str, kind: str) -> pd.DataFrame:
-    """The rows of a file. Raises ValueError, naming the file, if its runs or bounds were edited,
-    or if it lacks a declared column or has it in another type.
+    """Read the rows of a file. Raises ValueError, naming the file, if its runs or bounds were
+    edited, or if it lacks a declared column or has it in another type.
     """
     table, declared = row_files.read(file), TABLES[kind]
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
@@ -112,12 +112,12 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     return table.to_pandas()
 
 
-def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
-    """Runs with the bounds of their problems, as from `problems.compute_bounds`. Raises ValueError
-    as `read` does.
+def join_bounds(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
+    """Join runs with the bounds of their problems, as from `problems.compute_bounds`. Raises
+    ValueError as `read` does.
     """
     bounds = bounds.set_index("problem")
-    runs = _in_every_repeat(runs)
+    runs = _repeat_fixed_runs(runs)
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     _refuse(runs, runs["length"] < least, "length", "bound")
@@ -132,9 +132,9 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
     return Results(runs, problems, bounds)
 
 
-def _in_every_repeat(runs: pd.DataFrame) -> pd.DataFrame:
-    """Runs, of which those that drew no random numbers, and whose answers are all equal, stand once
-    for each repeat that there is under their condition, with their own id.
+def _repeat_fixed_runs(runs: pd.DataFrame) -> pd.DataFrame:
+    """Repeat runs that drew no random numbers, and whose answers are all equal, once for each
+    repeat that there is under their condition, with their own id.
     """
     if runs["drew"].all():
         return runs
@@ -151,7 +151,7 @@ def _in_every_repeat(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> None:
-    """Raise ValueError, naming the run, if a feasible one lies below a bound."""
+    """Refuse a feasible run that lies below a bound: raise ValueError, naming the run."""
     impossible = runs["feasible"] & below
     if impossible.any():
         run = runs[impossible].iloc[0]
@@ -160,46 +160,45 @@ def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> No
 
 
 def read_all(files: Mapping[str, Files], repeats: Mapping[str, int]) -> dict[str, Results]:
-    """Results by experiment, each up to its number of repeats."""
+    """Read the results of experiments, each up to its number of repeats."""
     return {
         experiment: read(files[experiment], number, experiment)
         for experiment, number in repeats.items()
     }
 
 
-def published_table(file: str) -> pd.DataFrame:
-    """A file of published numbers. Only an empty cell is a missing value: `none` and `NA` may be
-    names.
+def read_published_table(file: str) -> pd.DataFrame:
+    """Read a file of published numbers. Only an empty cell is a missing value: `none` and `NA` may
+    be names.
     """
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
 
 
-def printed_numbers(file: str) -> pd.DataFrame:
-    """A file of published numbers with one more column, `as_printed`: the text of their values,
+def read_printed_numbers(file: str) -> pd.DataFrame:
+    """Read a file of published numbers, and add a column `as_printed`: the text of their values,
     which keeps trailing zeros.
     """
-    table = published_table(file)
+    table = read_published_table(file)
     if "value" in table:
         table["as_printed"] = pd.read_csv(file, dtype=str)["value"]
     return table
 
 
-def keys_of(numbers: pd.DataFrame) -> list[str]:
-    """The columns that tell rows of published numbers apart: those left of `metric`."""
+def list_keys(numbers: pd.DataFrame) -> list[str]:
+    """List the columns that tell rows of published numbers apart: those left of `metric`."""
     return numbers.columns[: numbers.columns.get_loc("metric")].to_list()
 
 
-def published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:
-    """Several files of published numbers, by table; files that are not in a folder of that name are
-    left out.
+def read_published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:
+    """Read several files of published numbers, by table; files that are not in a folder of that
+    name are left out.
     """
     named = group_by_table(file for file in files if PurePath(file).parent.name == "published")
-    return {name: published_table(file) for name, file in named.items()}
+    return {name: read_published_table(file) for name, file in named.items()}
 
 
-def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
-    """The published numbers of several tables, concatenated, with the name of each in the column
-    `table`.
+def join_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
+    """Join the published numbers of several tables, with the name of each in the column `table`.
 
     Tables in another format are left out. None if none remains.
     """
@@ -208,25 +207,25 @@ def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None
     return pd.concat(tidy, ignore_index=True) if tidy else None
 
 
-def path_of(run: Mapping[str, Any] | pd.Series) -> Path | None:
-    """The path of a run, or None if it has none."""
+def build_path(run: Mapping[str, Any] | pd.Series) -> Path | None:
+    """Build the path of a run; None if it has none."""
     return answer.restore_path(run["path_curve"], run["path_points"])
 
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
-    """The runs whose columns equal the given values, or one of the values in a list."""
+    """Select the runs whose columns equal the given values, or one of the values in a list."""
     chosen = [runs[column].isin(convert_to_list(wanted)) for column, wanted in where.items()]
     return runs[np.logical_and.reduce(chosen)] if chosen else runs
 
 
-def repeated(runs: pd.DataFrame) -> np.ndarray:
-    """Which rows (n,) only show a run once more, in another repeat."""
+def is_repeated(runs: pd.DataFrame) -> np.ndarray:
+    """Return which rows (n,) only show a run once more, in another repeat."""
     return (~runs["drew"] & runs.duplicated(["condition", "method"])).to_numpy()
 
 
-def groups(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:
-    """The rows of a table with equal values in some columns, in their order; all of them without
-    columns.
+def group_rows(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:
+    """Group the rows of a table with equal values in some columns, in their order; all of them
+    without columns.
     """
     if not columns:
         return [table]
@@ -234,7 +233,7 @@ def groups(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:
-    """One of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or
+    """Pick one of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or
     `{repeat: n}`; None if there is none.
 
     The median of an even number of runs is the lower of the middle two; ties go to the first

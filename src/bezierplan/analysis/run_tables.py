@@ -12,8 +12,8 @@ import pyarrow.parquet as parquet
 from bezierplan.running.chunk import find_chunk_files
 
 
-def run_tables(folder: Path) -> dict[str, list[Path]]:
-    """The chunk files of each run table below a folder, by `study/experiment/method`. Raises
+def list_run_tables(folder: Path) -> dict[str, list[Path]]:
+    """List the chunk files of each run table below a folder, by `study/experiment/method`. Raises
     FileNotFoundError if there is none.
     """
     tables: dict[str, list[Path]] = {}
@@ -29,35 +29,35 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     return tables
 
 
-def table_digest(files: list[Path]) -> str:
-    """A hash over the rows of chunk files, sorted by id, each row once.
+def compute_table_digest(files: list[Path]) -> str:
+    """Compute a digest of the rows of chunk files, sorted by id, each row once.
 
     Neither the order of the files nor the split of repeats into chunks matters.
     """
-    rows = {row_text(row) for file in files for row in _rows(file)}
+    rows = {format_row(row) for file in files for row in _read_rows(file)}
     return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]
 
 
-def row_text(row: dict[str, Any]) -> str:
-    """A row of a run table as text: columns in order of name, numbers in full precision."""
+def format_row(row: dict[str, Any]) -> str:
+    """Format a row of a run table as text: columns in order of name, numbers in full precision."""
     return json.dumps(row, sort_keys=True, default=lambda value: value.tolist())
 
 
-def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
-    """The rows with this name in the run tables below a folder, by file."""
+def find_stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
+    """Find the rows with this name in the run tables below a folder, by file."""
     study, experiment, _, method, _ = name.split("/")
     files = find_chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
-    return {file: row for file in files for row in _rows(file, name)}
+    return {file: row for file in files for row in _read_rows(file, name)}
 
 
-def equal(run: pd.Series, row: dict[str, Any]) -> bool:
-    """Whether a reproduced run equals a stored row, bit for bit."""
+def is_equal(run: pd.Series, row: dict[str, Any]) -> bool:
+    """Return whether a reproduced run equals a stored row, bit for bit."""
     # What only other problems of the chunk have is missing in both.
-    return row_text({name: run.get(name) for name in row}) == row_text(row)
+    return format_row({name: run.get(name) for name in row}) == format_row(row)
 
 
-def _rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
-    """The rows of a chunk file, or those with one id. Raises ValueError if it has no runs."""
+def _read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
+    """Read the rows of a chunk file, or those with one id. Raises ValueError if it has no runs."""
     try:
         return parquet.read_table(
             file, filters=[("id", "=", identity)] if identity else None

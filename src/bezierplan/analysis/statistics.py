@@ -25,20 +25,22 @@ BLOCK = 1 << 15
 # The functions below map values (..., n) without gaps, n at least 1, to statistics (...).
 
 
-def _std(values: np.ndarray) -> np.ndarray:
-    """Standard deviation of a sample (divisor n - 1), NaN for a single value."""
+def _compute_std(values: np.ndarray) -> np.ndarray:
+    """Compute the standard deviation of a sample (divisor n - 1), NaN for a single value."""
     if values.shape[-1] == 1:
         return np.full(values.shape[:-1], np.nan)
     return np.std(values, axis=-1, ddof=1)
 
 
-def _mean(values: np.ndarray) -> np.ndarray:
+def _compute_mean(values: np.ndarray) -> np.ndarray:
+    """Compute the mean over the last axis."""
     return np.mean(values, axis=-1)
 
 
-def _quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
-    """Quantiles by linear interpolation. Uses a full sort, because numpy sorts rows faster than it
-    partitions them at two places.
+def _compute_quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
+    """Compute quantiles by linear interpolation.
+
+    A full sort is used, because numpy sorts rows faster than it partitions them at two places.
     """
     ordered = np.sort(values, axis=-1)
     last = values.shape[-1] - 1
@@ -58,17 +60,19 @@ _SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
 """Those that are quantiles. `unstated`: the paper does not say; the median of ours is printed."""
 
 STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
-    "mean": _mean,
-    "std": _std,
-    "iqr": lambda values: np.subtract(*_quantiles(values, 0.75, 0.25)),  # interquartile range
+    "mean": _compute_mean,
+    "std": _compute_std,
+    "iqr": lambda values: np.subtract(
+        *_compute_quantiles(values, 0.75, 0.25)
+    ),  # interquartile range
     "range": lambda values: np.ptp(values, axis=-1),
     "min": lambda values: np.min(values, axis=-1),
     "max": lambda values: np.max(values, axis=-1),
     # Of a boolean metric (1 or 0): the number of runs that have it.
     "count": lambda values: np.sum(values, axis=-1),
-    "share": _mean,  # likewise: the share of runs that have it
+    "share": _compute_mean,  # likewise: the share of runs that have it
     **{
-        name: lambda values, share=share: _quantiles(values, share)[0]
+        name: lambda values, share=share: _compute_quantiles(values, share)[0]
         for name, share in _SHARES.items()
     },
 }
@@ -77,8 +81,8 @@ STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 WITHOUT_INTERVAL = ("min", "max", "range")
 
 
-def statistic(name: str, values: np.ndarray) -> float:
-    """A named statistic of values.
+def compute_statistic(name: str, values: np.ndarray) -> float:
+    """Compute a named statistic of values.
 
     Parameters
     ----------
@@ -100,65 +104,70 @@ def statistic(name: str, values: np.ndarray) -> float:
     return float(STATISTICS[name](values)) if len(values) else math.nan
 
 
-def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1:
-    (DRAWS,).
+def resample(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
+    """Draw `size` values with replacement from values (n,), n at least 1, DRAWS times, and return a
+    named statistic of each draw (DRAWS,).
 
-    Above `MOST_DRAWN` values, its normal approximation; where that is not known, of so many values.
+    Above `MOST_DRAWN` values it is the normal approximation; where that is not known, draws of so
+    many values.
     """
     if values.min() == values.max() and size <= MOST_DRAWN:
         return np.full(DRAWS, STATISTICS[name](np.full(size, values[0])))  # all draws are alike
     if size > MOST_DRAWN and _is_normal(name, values):
         # In random order, since draws of several cells are added.
-        return rng.permutation(_normal(name, values, 1 / size))
+        return rng.permutation(_approximate_draws(name, values, 1 / size))
     size = min(size, MOST_DRAWN)
-    return _in_blocks(
+    return _draw_in_blocks(
         name,
         size,
         lambda rows: values.take(rng.integers(len(values), size=(rows, size), dtype=np.int32)),
     )
 
 
-def _in_blocks(name: str, size: int, draw: Callable[[int], np.ndarray]) -> np.ndarray:
-    """A named statistic of experiments (DRAWS,), of `size` values each, of which `draw` gives as
-    many as asked for, (rows, size).
+def _draw_in_blocks(name: str, size: int, draw: Callable[[int], np.ndarray]) -> np.ndarray:
+    """Draw DRAWS experiments of `size` values each in blocks, and return a named statistic of each
+    (DRAWS,).
+
+    draw: gives as many experiments as asked for, (rows, size).
     """
     block = max(1, BLOCK // size)
     counts = [min(block, DRAWS - first) for first in range(0, DRAWS, block)]
     return np.concatenate([STATISTICS[name](draw(rows)) for rows in counts])
 
 
-def influence(name: str, values: np.ndarray) -> np.ndarray:
-    """How far each of values (n,), n at least 2, moves a named statistic: its empirical influence
-    function (Hampel 1974), (n,).
+def compute_influence(name: str, values: np.ndarray) -> np.ndarray:
+    """Compute how far each of values (n,), n at least 2, moves a named statistic: its empirical
+    influence function (Hampel 1974), (n,).
 
     Its standard deviation, divided by the root of n, is the standard error of the statistic. Raises
     KeyError for `WITHOUT_INTERVAL` and for an unknown name.
     """
     if name == "iqr":
-        return _quantile_influence(values, 0.75) - _quantile_influence(values, 0.25)
+        return _compute_quantile_influence(values, 0.75) - _compute_quantile_influence(values, 0.25)
     if name in _SHARES:
-        return _quantile_influence(values, _SHARES[name])
+        return _compute_quantile_influence(values, _SHARES[name])
     apart, std = values - values.mean(), values.std()
     if name == "std":
         return (apart**2 - std**2) / (2 * std) if std else np.zeros(len(values))
     return {"mean": 1, "share": 1, "count": len(values)}[name] * apart
 
 
-def _quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
-    """The density at the quantile is taken from the order statistics at the ends of its 95 %
-    interval (McKean and Schrader 1984).
+def _compute_quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
+    """Compute the influence function of a quantile.
+
+    The density at the quantile is taken from the order statistics at the ends of its 95 % interval
+    (McKean and Schrader 1984).
     """
     reach = 1.96 * math.sqrt(share * (1 - share) / len(values))
-    low, quantile, high = _quantiles(
+    low, quantile, high = _compute_quantiles(
         values, max(share - reach, 0.0), share, min(share + reach, 1.0)
     )
     return (share - (values <= quantile)) * (high - low) / (2 * reach)
 
 
-def normal_draws(centre: float, error: float) -> np.ndarray:
-    """What resampling would draw for a statistic with a standard error, without randomness: evenly
-    spaced normal quantiles (DRAWS,).
+def compute_normal_draws(centre: float, error: float) -> np.ndarray:
+    """Compute the draws that resampling would give for a statistic with a standard error, without
+    randomness: evenly spaced normal quantiles (DRAWS,).
     """
     from scipy.special import ndtri
 
@@ -166,24 +175,27 @@ def normal_draws(centre: float, error: float) -> np.ndarray:
 
 
 def _is_normal(name: str, values: np.ndarray) -> bool:
-    """Whether a statistic of many values has a normal approximation that follows from values
+    """Return whether a statistic of many values has a normal approximation that follows from values
     (n,).
     """
     return name not in WITHOUT_INTERVAL and len(values) > 1 and bool(np.isfinite(values).all())
 
 
-def _normal(name: str, values: np.ndarray, share: float) -> np.ndarray:
-    """Normal draws (DRAWS,) of a statistic whose variance is a share of that of its influence
-    function over values (n,).
+def _approximate_draws(name: str, values: np.ndarray, share: float) -> np.ndarray:
+    """Approximate the draws (DRAWS,) of a statistic by normal ones, whose variance is a share of
+    that of its influence function over values (n,).
     """
-    return normal_draws(
-        statistic(name, values), influence(name, values).std(ddof=1) * math.sqrt(share)
+    return compute_normal_draws(
+        compute_statistic(name, values),
+        compute_influence(name, values).std(ddof=1) * math.sqrt(share),
     )
 
 
-def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % percentile bootstrap interval of a statistic; above `MOST_RESAMPLED` values, its normal
-    approximation.
+def compute_interval(
+    name: str, values: np.ndarray, rng: np.random.Generator
+) -> tuple[float, float]:
+    """Compute the 95 % percentile bootstrap interval of a statistic; above `MOST_RESAMPLED` values,
+    its normal approximation.
 
     Parameters
     ----------
@@ -203,46 +215,50 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
     if len(values) > MOST_RESAMPLED and _is_normal(name, values):
-        draws = _normal(name, values, 1 / len(values))
+        draws = _approximate_draws(name, values, 1 / len(values))
     else:
-        draws = resampled(name, values, len(values), rng)
+        draws = resample(name, values, len(values), rng)
     low, high = np.quantile(draws, [TAIL, 1 - TAIL])
     return float(low), float(high)
 
 
-def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of experiments with `size` values, as predicted from our values (n,), n at
-    least 1: (DRAWS,). Of values (n, k), which are drawn row by row, of each column: (DRAWS, k).
+def draw_predictions(
+    name: str, values: np.ndarray, size: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Draw experiments with `size` values, as predicted from our values (n,), n at least 1, and
+    return a named statistic of each: (DRAWS,). Values (n, k) are drawn row by row, and each column
+    has its statistic: (DRAWS, k).
 
-    Drawn in two stages, because our values are a sample too: first the population, then an
-    experiment from it. Numbers are drawn with replacement twice; for booleans, the share is drawn
-    (from Jeffreys' posterior), then the number of true values. Above `MOST_PREDICTED` values, the
-    normal approximation of both stages; where that is not known, experiments of so many values.
+    Experiments are drawn in two stages, because our values are a sample too: first the population,
+    then an experiment from it. Numbers are drawn with replacement twice; for booleans, the share is
+    drawn (from Jeffreys' posterior), then the number of true values. Above `MOST_PREDICTED` values,
+    the normal approximation of both stages; where that is not known, experiments of so many values.
     """
     if name in ("count", "share"):
         true = values.sum()
         counts = rng.binomial(size, rng.beta(true + 0.5, len(values) - true + 0.5, DRAWS))
         return counts / (size if name == "share" else 1)
     if size > MOST_PREDICTED and _is_normal(name, values):
-        return _normal(name, values, 1 / len(values) + 1 / size)
+        return _approximate_draws(name, values, 1 / len(values) + 1 / size)
     size = min(size, MOST_PREDICTED)
 
     def draw(rows: int) -> np.ndarray:
         # Only the places of the first draw that the second one uses are filled, each once.
+        """Draw so many experiments in two stages."""
         places, world = rng.integers(len(values), size=(2, rows, size), dtype=np.int32)
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
         chosen = np.maximum.accumulate(asked_first, axis=1)
         return np.moveaxis(values[np.take_along_axis(world, chosen, axis=1)], 1, -1)
 
-    return _in_blocks(name, size, draw)
+    return _draw_in_blocks(name, size, draw)
 
 
-def predicted_within(
+def draw_predictions_within(
     name: str, groups: list[np.ndarray], size: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """A named statistic of experiments whose `size` values all belong to one group, as predicted
-    from our groups of values: (DRAWS,).
+    """Draw experiments whose `size` values all belong to one group, as predicted from our groups of
+    values, and return a named statistic of each: (DRAWS,).
 
     First a group is drawn, then an experiment from it, for example runs in one layout of the
     obstacles.
@@ -256,7 +272,7 @@ def predicted_within(
     return drawn
 
 
-def prediction(
+def compute_prediction_interval(
     name: str,
     values: np.ndarray,
     size: int | None,
@@ -264,7 +280,8 @@ def prediction(
     possible: tuple[float, float] = (-math.inf, math.inf),
     groups: list[np.ndarray] | None = None,
 ) -> tuple[float, float]:
-    """Return the range in which 95 % of experiments of the paper's size end, judging by our values.
+    """Compute the range in which 95 % of experiments of the paper's size end, judging by our
+    values.
 
     Parameters
     ----------
@@ -290,13 +307,13 @@ def prediction(
     """
     if len(values) < LEAST_RUNS:
         return math.nan, math.nan
-    least, most, tail = _experiments(name, values, size, rng, possible, groups)
+    least, most, tail = _predict_ends(name, values, size, rng, possible, groups)
     low = np.quantile(least, tail, method="lower")
     high = np.quantile(most, 1 - tail, method="higher")
     return float(low), float(high)
 
 
-def _experiments(
+def _predict_ends(
     name: str,
     values: np.ndarray,
     size: int | None,
@@ -304,47 +321,47 @@ def _experiments(
     possible: tuple[float, float],
     groups: list[np.ndarray] | None,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """The least and the most that experiments of a size may print, given our values (n,), and the
-    tail to leave out at each end.
+    """Predict the least and the most that experiments of a size may print, given our values (n,),
+    and return the tail to leave out at each end.
     """
     if size is None:
         return values, values, TAIL
     if groups is not None:
         # A new group lies below the k-th of n others with probability k / (n + 1); that one stands
         # at (k - 1/2) / n among the draws.
-        drawn = predicted_within(name, groups, size, rng)
+        drawn = draw_predictions_within(name, groups, size, rng)
         return drawn, drawn, max(TAIL * (len(groups) + 1) - 0.5, 0.0) / len(groups)
     if name in ("min", "max"):
-        least, most = _extremes(name, values, size)
+        least, most = _draw_extremes(name, values, size)
         return np.maximum(least, possible[0]), np.minimum(most, possible[1]), TAIL
     if name == "std" and len(values) > 1 and np.isfinite(values).all():
-        drawn = _std_draws(values, size)
+        drawn = _draw_stds(values, size)
         return drawn, drawn, TAIL
-    drawn = predicted(name, values, size, rng)
-    return drawn, drawn, TAIL if name in ("count", "share") else expanded_tail(len(values))
+    drawn = draw_predictions(name, values, size, rng)
+    return drawn, drawn, TAIL if name in ("count", "share") else compute_expanded_tail(len(values))
 
 
-def scaled(name: str, values: np.ndarray, among: int, size: int | None) -> float:
-    """A named statistic of our values (n,) as an experiment of `size` runs would print it, so that
-    it stands beside a published one.
+def scale_statistic(name: str, values: np.ndarray, among: int, size: int | None) -> float:
+    """Scale a named statistic of our values (n,) to an experiment of `size` runs, so that it stands
+    beside a published one.
 
     A count is taken in proportion; among: runs among which it is one. The least and the largest
     value are the medians of those of such experiments, where our values determine them; our own
     where they do not. The other statistics do not depend on the number of runs.
     """
-    value = statistic(name, values)
+    value = compute_statistic(name, values)
     if size is None or size == among or not len(values):
         return value
     if name == "count":
         return value * size / among
     if name not in ("min", "max"):
         return value
-    least, most = (np.sort(ends)[DRAWS // 2] for ends in _extremes(name, values, size))
+    least, most = (np.sort(ends)[DRAWS // 2] for ends in _draw_extremes(name, values, size))
     return float(0.5 * (least + most)) if math.isfinite(least) and math.isfinite(most) else value
 
 
-def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
-    """Standard deviations of `size` values, predicted from our values (n,), n at least 2: evenly
+def _draw_stds(values: np.ndarray, size: int) -> np.ndarray:
+    """Predict standard deviations of `size` values from our values (n,), n at least 2: evenly
     spaced quantiles (DRAWS,).
 
     The logarithm of a variance is nearly normal, with a standard error that follows from the
@@ -360,7 +377,7 @@ def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
         return np.zeros(DRAWS)
     kurtosis = (
         n
-        * np.sum((values - _trimmed_mean(values)) ** 4)
+        * np.sum((values - _compute_trimmed_mean(values)) ** 4)
         / np.sum((values - values.mean()) ** 2) ** 2
     )
     variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
@@ -369,9 +386,9 @@ def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
         return spread * np.exp(logarithms)
 
 
-def _trimmed_mean(values: np.ndarray) -> float:
-    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, about which
-    Bonett's kurtosis is taken.
+def _compute_trimmed_mean(values: np.ndarray) -> float:
+    """Compute the mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, about
+    which Bonett's kurtosis is taken.
     """
     n = len(values)
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
@@ -379,9 +396,9 @@ def _trimmed_mean(values: np.ndarray) -> float:
     return float(np.sort(values)[cut : n - cut].mean())
 
 
-def expanded_tail(n: int) -> float:
-    """The tail at each end of bootstrap draws from n values for a central 95 % (the expanded
-    percentile interval, Hesterberg 2015).
+def compute_expanded_tail(n: int) -> float:
+    """Compute the tail at each end of bootstrap draws from n values for a central 95 % (the
+    expanded percentile interval, Hesterberg 2015).
 
     A few values vary less than their population, and their spread is uncertain: Student's t
     quantiles replace the normal ones.
@@ -393,16 +410,16 @@ def expanded_tail(n: int) -> float:
     return float(ndtr(math.sqrt(n / (n - 1)) * stdtrit(n - 1, TAIL)))
 
 
-def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size`
-    others may lie, by evenly spaced chance.
+def _draw_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of
+    `size` others may lie, by evenly spaced chance.
 
     Resampling never goes beyond our own extremes, whereas half of all experiments of our size do.
     All orders of our values and the others are equally likely, which gives the probability of each
     gap; the outermost are infinite.
     """
     if name == "max":
-        least, most = _extremes("min", -values, size)
+        least, most = _draw_extremes("min", -values, size)
         return -most, -least
     ends = np.concatenate([[-np.inf], np.sort(values), [np.inf]])
     # Probability that more than 0, 1, ... of ours lie below the least of the others.

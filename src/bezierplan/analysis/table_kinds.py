@@ -81,6 +81,7 @@ class TableValue(Model):
 
     @property
     def statistics(self) -> list[str]:
+        """Return the statistics as a list, also if one is given."""
         return convert_to_list(self.statistic)
 
 
@@ -206,17 +207,17 @@ class Pivot(TableEntry):
 
     @property
     def printed(self) -> bool:
-        """Whether it has the form that the paper prints."""
+        """Return whether it has the form that the paper prints."""
         return bool(self.published) and not self.extends
 
     @property
     def key_columns(self) -> list[str]:
-        """The columns of the runs table that distinguish its rows and columns."""
+        """Return the columns of the runs table that distinguish its rows and columns."""
         return [name for name in [*self.index, *self.columns] if name not in WORDS]
 
     @property
     def across(self) -> list[str]:
-        """Those that distinguish its columns."""
+        """Return the columns of the runs table that distinguish its columns."""
         return [name for name in self.columns if name not in WORDS]
 
 

@@ -10,9 +10,9 @@ from typing import NamedTuple
 class Word(NamedTuple):
     """A position or a verdict.
 
-    on: what it is on, `number` or `claim`. group: what it counts as in the outcome. counted: how a
-    count says it. caption: how a caption does, with braces for the runs. look: the class that
-    colours it. symbol, sign: its mark on a page, and in print.
+    on: the kind of thing that has it, `number` or `claim`. group: its group in the counts of the
+    outcome. counted: its words in a count. caption: its words in a caption, with braces for the
+    runs. look: the class that colours it. symbol, sign: its mark on a page, and in print.
     """
 
     on: str
@@ -33,11 +33,11 @@ OTHER = Word("", "open", "", "", "open", "·", "", "")
 """How any other text is shown."""
 
 
-def on(what: str) -> dict[str, Word]:
-    """Return the positions of numbers, or the verdicts on claims."""
+def select_words(what: str) -> dict[str, Word]:
+    """Select the positions of numbers, or the verdicts on claims. what: `number` or `claim`."""
     return {name: word for name, word in WORDS.items() if word.on == what}
 
 
-def groups(what: str) -> dict[str, str]:
-    """Return what each position or verdict counts as."""
-    return {name: word.group for name, word in on(what).items()}
+def list_groups(what: str) -> dict[str, str]:
+    """List the group in which each position or verdict counts. what: `number` or `claim`."""
+    return {name: word.group for name, word in select_words(what).items()}

@@ -4,7 +4,7 @@ checksums have the same content.
 
 from pathlib import Path
 
-from bezierplan.analysis.run_tables import run_tables, table_digest
+from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
 
 
 def main(folder: Path) -> None:
@@ -16,5 +16,5 @@ def main(folder: Path) -> None:
     folder : Path
         a folder of results, such as results/full
     """
-    for name, files in run_tables(folder).items():
-        print(f"{table_digest(files)}  {name}", flush=True)
+    for name, files in list_run_tables(folder).items():
+        print(f"{compute_table_digest(files)}  {name}", flush=True)

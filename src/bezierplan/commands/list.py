@@ -56,7 +56,7 @@ def _load_metrics(studies: Iterable[Study]) -> None:
     from bezierplan.analysis import study_code
 
     for study in studies:
-        study_code.functions(study.code_for("metrics"))
+        study_code.load_functions(study.code_for("metrics"))
         for planner in map(study.planner, study.methods):
             metrics.add_columns(getattr(load_planner(planner), "extra", ()))
 
@@ -123,7 +123,7 @@ NAMES: dict[str, Callable[[], Rows]] = {
         (name, f"{each.meaning} ({each.unit})") for name, each in metrics.METRICS.items()
     ),
     "panels": lambda: _read_sentences(panels.kinds()),
-    "tests": lambda: _read_sentences(kinds.kinds()),
+    "tests": lambda: _read_sentences(kinds.list_kinds()),
     "worlds": lambda: _read_sentences(workspace_kinds.kinds()),
     "planners": lambda: _read_sentences({name: load_planner(name) for name in list_planners()}),
 }

@@ -80,7 +80,7 @@ def main(
     if out and answer.path:
         answer.save(out, step=step)
     file = {"file": str(out)} if out and answer.path else {}
-    for name, text in (answers.lines(answer) | file).items():
+    for name, text in (answers.describe_answer(answer) | file).items():
         print(f"{name:16}{text}")
     if not math.isfinite(answer.shortest):
         _fail(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")

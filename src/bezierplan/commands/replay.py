@@ -7,7 +7,7 @@ from pathlib import Path
 from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.analysis.results import Results
-from bezierplan.analysis.run_tables import equal, stored_runs
+from bezierplan.analysis.run_tables import find_stored_runs, is_equal
 from bezierplan.commands import read_studies
 from bezierplan.figures import sheet
 from bezierplan.figures.panels import Sources, panel_of
@@ -37,7 +37,10 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     loaded = read_studies(studies)
     reproduced = replay(run, loaded)
     row = reproduced.runs.iloc[0]
-    same = {file: equal(row, stored) for file, stored in stored_runs(run, Path("results")).items()}
+    same = {
+        file: is_equal(row, stored)
+        for file, stored in find_stored_runs(run, Path("results")).items()
+    }
     for file, is_same in same.items():
         print(f"{'stored in':16}{file}: {'equal' if is_same else 'NOT EQUAL'}")
     picture = Path("results/replay") / f"{run}.svg"
@@ -47,7 +50,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
         draw_drive(reproduced, picture)
     else:
         answer = api.answer_of(reproduced, run)
-        lines = answers.lines(answer)
+        lines = answers.describe_answer(answer)
         answer.save(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")

@@ -53,8 +53,8 @@ def main(
     """
     asked = api.problems(experiment)
     if problems:
-        benchmark.problem_rows(asked).to_csv(problems, index=False)
-    stored, made = benchmark.stored(experiment), {}
+        benchmark.list_problems(asked).to_csv(problems, index=False)
+    stored, made = benchmark.read_stored(experiment), {}
     for candidate in candidates:
         made[f"here:{candidate}"] = (
             _read(Path(candidate), asked)
@@ -62,8 +62,8 @@ def main(
             else api._answer([*asked.values()], candidate, repeats, settings=settings or {})
         )
     compared = api.Comparison(made)
-    own = benchmark.summaries(compared.runs) if made else stored[:0]
-    table = benchmark.scores(pd.concat([stored, own])[stored.columns])
+    own = benchmark.compute_summaries(compared.runs) if made else stored[:0]
+    table = benchmark.rank_methods(pd.concat([stored, own])[stored.columns])
     print(table.to_string(float_format="%.4g"))
     if out:
         table.to_csv(out)
@@ -79,7 +79,9 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     for name, path, evaluations in benchmark.read_paths(file, problems):
         problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
         check_ends(path, problem)
-        judged = answers.verdict(problem, shortest_path(problem), path)
+        judged = answers.judge_path(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
-        answers_read.append(api.Answer(**judged, **answers.of_planner(plan), method=str(file)))
+        answers_read.append(
+            api.Answer(**judged, **answers.list_planner_fields(plan), method=str(file))
+        )
     return answers_read

@@ -51,20 +51,20 @@ def main(
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
     places = stored.read_places(folder, read_config(), map(find_study_path, studies))
-    config = proof.narrowed(read_config(), [*places.values()])
+    config = proof.select_studies(read_config(), [*places.values()])
     at = stored.list_places(reading.load(reading.read_config(config)))
-    contents = proof.listed(folder)
+    contents = proof.read_list(folder)
     makers = stored.find_jobs(at, folder, contents.digests)
     changes = {
         file: _find_changes(makers.get(file), contents.accounts[file]) for file in contents.accounts
     }
     tasks = _list_tasks(at, makers, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
-    faults = [*proof.unlisted(folder, contents), *verdict.faults]
+    faults = [*proof.find_changed_files(folder, contents), *verdict.faults]
     again = recheck.run_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
     follow = {name: not isinstance(makers[name], _KEPT) for name in makers}
-    files, others = proof.differing(folder, follow, config, contents.digests, cores)
+    files, others = proof.find_differences(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         # One line for each file: its first fault.

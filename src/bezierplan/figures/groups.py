@@ -59,8 +59,8 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
         numbers = values(group)
         key = [f"{column}={group.runs[column].iloc[0]}" for column in keys]
         rng = generator("/".join([metric, statistic, *key]))
-        low, high = statistics.interval(statistic, numbers, rng)
-        value = statistics.statistic(statistic, numbers)
+        low, high = statistics.compute_interval(statistic, numbers, rng)
+        value = statistics.compute_statistic(statistic, numbers)
         yield {"n": len(numbers), "value": value, "low95": low, "high95": high}
 
     return grouped(measured(results, metric), keys, rows)
@@ -68,7 +68,7 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
 
 def measured(results: Results, metric: str) -> Results:
     """Results with a metric in the column value. Raises KeyError for an unknown metric."""
-    numbers = metrics.values(results.runs, metric, results.problems)
+    numbers = metrics.compute_values(results.runs, metric, results.problems)
     return results._replace(runs=results.runs.assign(value=numbers))
 
 
@@ -125,7 +125,7 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     """
     unit = unit_of(column, scene)
     beside = "" if unit in ("-", "s", "") else f" ({unit})"
-    return f"{statistic} {naming.column_name(column, scene.labels)}{beside}".lstrip()
+    return f"{statistic} {naming.name_column(column, scene.labels)}{beside}".lstrip()
 
 
 def show_metric(
@@ -138,7 +138,7 @@ def show_metric(
 
 def unit_of(column: str, scene: Any) -> str:
     """The unit of a metric; none for another column."""
-    return metrics.unit(column, scene.unit) if column in metrics.METRICS else ""
+    return metrics.find_unit(column, scene.unit) if column in metrics.METRICS else ""
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:

@@ -78,7 +78,7 @@ class FigureFiles(Job):
     alternatives: list[dict[str, str]]
     """What each single alternative is, in the order of its files: assumption, detail, value."""
 
-    def modules(self):
+    def list_modules(self):
         """Kinds of panel and workspace, and planners that run again."""
         again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
         return [
@@ -98,8 +98,8 @@ class FigureFiles(Job):
         from bezierplan.running import problems as problem_files
         from bezierplan.workspaces import files as workspace_files
 
-        published = results.published_tables(input_files.sources)
-        numbers = results.joined_numbers(published)
+        published = results.read_published_tables(input_files.sources)
+        numbers = results.join_numbers(published)
         read = results.read_all(inputs.group_by_experiment(self.shows, input_files), self.repeats)
         experiments = {
             name: runs._replace(published=numbers, jobs=self.chunks.get(name))
@@ -111,13 +111,13 @@ class FigureFiles(Job):
         }
         places, _ = problem_files.build_all(self.problems, Path(self.folder))
         problems = {name: runs.problems for name, runs in experiments.items()}
-        drawings = study_code.part_of(
-            [name for name in self.code if study_code.part(name) == "panels"]
+        drawings = study_code.load_part(
+            [name for name in self.code if study_code.name_part(name) == "panels"]
         )
         scene = sheet.FigureScene(
             problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout, places
         )
-        functions = study_code.functions(self.code)
+        functions = study_code.load_functions(self.code)
         checks = [by_reading.read_checks(file) for file in input_files.alternatives]
         under = [*zip(self.alternatives, checks, strict=True)]
         sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
@@ -142,7 +142,7 @@ class Page(Job):
         from bezierplan.figures.page import EVIDENCE, build, reader
         from bezierplan.running import inputs
 
-        study_code.functions(self.code)
+        study_code.load_functions(self.code)
         folder = Path(input_files.verified).parent
         page = build.page(
             self.page,

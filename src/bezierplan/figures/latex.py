@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.numbers.comparison import beside
+from bezierplan.analysis.numbers.comparison import describe_range
 
 _SIGNS = {
     "\\": r"\textbackslash{}",
@@ -43,7 +43,7 @@ def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataF
     over = np.where(cells == "", "-\n", "-\n" + cells)
     for number in numbers[numbers["table_row"] != ""].to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        over[place] = f"{number['as_printed']}\n{beside(number) or cells[place]}"
+        over[place] = f"{number['as_printed']}\n{describe_range(number) or cells[place]}"
     return ours.iloc[:, :heads].join(pd.DataFrame(over, ours.index, ours.columns[heads:]))
 
 

@@ -218,7 +218,7 @@ def groups(
         (
             value,
             frame[frame[column] == value],
-            look | {"label": naming.printed(value, column, scene.labels)},
+            look | {"label": naming.format_value(value, column, scene.labels)},
         )
         for value, look in zip(values, lines(values, scene.looks))
     ]

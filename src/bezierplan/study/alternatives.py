@@ -11,7 +11,7 @@ from typing import Any
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims.check import ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.variants import in_variant, variants, with_work
+from bezierplan.analysis.claims.variants import apply_variant, list_variants, split_work
 from bezierplan.figures.panels.alternatives import FEW
 from bezierplan.schema.model import convert_to_list
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
@@ -76,7 +76,7 @@ def is_judged(claim: Claim) -> bool:
     """Return whether a claim can change under a reading: its primary checks rest on runs, and on no
     times.
     """
-    primary = [with_work(check)[0] for check in claim.checks if check.primary]
+    primary = [split_work(check)[0] for check in claim.checks if check.primary]
     return all(check.experiments and not check.timed for check in primary)
 
 
@@ -145,12 +145,18 @@ def keep_claims(study: Study, claims: list[Claim]) -> Study:
     primary variant, and with only the runs that these checks name.
     """
     claims = [
-        claim.in_primary_variant().but(checks=[check for check in claim.checks if check.primary])
+        claim.select_primary_variant().but(
+            checks=[check for check in claim.checks if check.primary]
+        )
         for claim in claims
     ]
     experiments = dict(study.experiments)
     # A column of the primary variant that no check names becomes one more condition of `where`.
-    checks = [check for claim in claims for check in in_variant(claim.checks, *variants(claim) * 2)]
+    checks = [
+        check
+        for claim in claims
+        for check in apply_variant(claim.checks, *list_variants(claim) * 2)
+    ]
     for name in list_experiments(claims):
         naming = [check for check in checks if name in check.experiments]
         experiments[name] = _keep_checks(study, experiments[name], naming)

@@ -17,8 +17,8 @@ from pydantic import Field, create_model
 from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.comparisons import mixed, told_apart
-from bezierplan.analysis.claims.variants import in_variant, variants
+from bezierplan.analysis.claims.comparisons import find_mixed_factor, list_unit_columns
+from bezierplan.analysis.claims.variants import apply_variant, list_variants
 from bezierplan.analysis.outcome import texts
 from bezierplan.analysis.results import select
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
@@ -79,9 +79,9 @@ class Checks:
             "own method": study.methods.keys() - study.baselines.keys(),
             "baseline": study.baselines,
             "policy": study.policies,
-            "function": study_code.functions(study.code_for("functions")),
-            "world": study_code.part_of(study.code_for("worlds")),
-            "drawing": study_code.part_of(study.code_for("panels")),
+            "function": study_code.load_functions(study.code_for("functions")),
+            "world": study_code.load_part(study.code_for("worlds")),
+            "drawing": study_code.load_part(study.code_for("panels")),
             "statistic": statistics.STATISTICS,
             "compared": study.find_published_tables(),
             "artefact": {**study.tables, **study.figures},
@@ -502,8 +502,8 @@ class Checks:
     def check_claim(self, identity: str, claim: Claim) -> None:
         """Check that the names in a claim's checks exist, and that its variants select runs."""
         self.check_names(claim)
-        first, *_ = variants(claim)
-        judged = in_variant(claim.checks, first, first)
+        first, *_ = list_variants(claim)
+        judged = apply_variant(claim.checks, first, first)
         for number, check in enumerate(claim.checks):
             with self.at("checks", str(number)):
                 self.check_names(check)
@@ -531,11 +531,11 @@ class Checks:
         planned = check.where.keys() & {*rows} - {"repeat"}
         rows = select(rows, {column: check.where[column] for column in planned})
         # Ranks are taken among the runs of an artefact alone.
-        factor = "" if check.metric == "rank" else mixed(check, rows)
+        factor = "" if check.metric == "rank" else find_mixed_factor(check, rows)
         if factor:
             vary = [self.study.experiments[name].vary for name in check.experiments]
             columns = dict.fromkeys(["problem", *itertools.chain(*vary)])
-            apart = told_apart(check)
+            apart = list_unit_columns(check)
             several = [name for name in columns if name not in apart and rows[name].nunique() > 1]
             raise Fault(
                 f"mixes several values of {factor}; expected every: "

@@ -92,7 +92,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 check_known(row[column], values, f"{where}: {column}")
         metric = table.reads.get(row["metric"], row["metric"])
         check_known(f"{metric} {row['statistic']}", shown, f"{where}: metric and statistic")
-        of_metric = metrics.unit(row["metric"], unit)
+        of_metric = metrics.find_unit(row["metric"], unit)
         share, least = row["statistic"] == "share", metrics.METRICS[metric].least
         # `least` may name a column of the runs table, which printed numbers do not have.
         low = 0.0 if share or isinstance(least, str) else min(least, 0.0)

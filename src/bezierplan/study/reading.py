@@ -217,7 +217,7 @@ def _load_code(folder: Path) -> None:
 
     for name in find_code(folder.resolve().name, shorten_path(folder)).values():
         try:
-            study_code.functions([name])
+            study_code.load_functions([name])
         except (Exception, SystemExit) as error:  # a user's file can fail in any way
             raise Fault(f"{name}: {describe_in_one_line(error)}") from None
 

@@ -54,5 +54,5 @@ def _run_again(
     name = condition.problem
     named, met = {name: made[name]}, {name: moving[name]} if moving else {}
     table = pd.DataFrame(execution.make_rows_again(chunk, [(condition, repeat)], named, met))
-    joined = results.joined(table, named, problems.compute_bounds(named, met).to_pandas())
+    joined = results.join_bounds(table, named, problems.compute_bounds(named, met).to_pandas())
     return joined._replace(worlds=met, jobs={chunk.method: chunk})

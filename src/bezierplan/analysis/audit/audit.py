@@ -6,8 +6,9 @@ consistent (whether the number obeys the rule; empty if the rule cannot tell), a
 rules that hold for any paper: how the number was checked).
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
-(`metrics.Metric`): `of_cells` checks the statistics of one cell, `of_ranks` mean ranks, `of_orders`
-the order of rows, `of_middles` means of lengths within their ranges, `of_digits` all decimals.
+(`metrics.Metric`): `check_cells` checks the statistics of one cell, `check_ranks` mean ranks,
+`check_orders` the order of rows, `check_middles` means of lengths within their ranges,
+`check_digits` all decimals.
 `analysis.possible` has the closed forms.
 """
 
@@ -21,9 +22,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import identified, possible
-from bezierplan.analysis.audit.rows import COLUMNS, checked, place, together
+from bezierplan.analysis.audit.rows import COLUMNS, build_row, describe_cell, merge_rows
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
-from bezierplan.analysis.results import groups, keys_of, printed_numbers
+from bezierplan.analysis.results import group_rows, list_keys, read_printed_numbers
 from bezierplan.analysis.table_kinds import Monotone, Pivot
 from bezierplan.running import problems
 from bezierplan.running.inputs import Files
@@ -56,18 +57,18 @@ DIGITS_LEVEL = 0.01
 """Decimals are inconsistent if chance makes digits as uneven less often."""
 
 
-def below_bound(
+def check_bounds(
     item: str, table: pd.DataFrame, bounds: pd.DataFrame, primary: dict[str, Any]
 ) -> Iterator[dict]:
     """Check every published length against the exact shortest length of its problem.
 
-    table: published numbers, as from `printed_numbers`. bounds: of the same table's experiment, one
-    row per problem, indexed by name. primary: column -> the value of the default reading. The
-    allowance is half a unit of the last printed digit.
+    table: published numbers, as from `read_printed_numbers`. bounds: one row per problem of the
+    same table's experiment, indexed by name. primary: column -> the value of the default reading.
+    The allowance is half a unit of the last printed digit.
 
     A number's problem is the one that its row names, as problem or as workspace; without either,
-    that of the default reading, or the only one of the experiment. Numbers that cover
-    several problems are left out.
+    that of the default reading, or the only one of the experiment. Numbers that cover several
+    problems are left out.
     """
     rule = "a path is no shorter than the shortest path"
     lengths = table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
@@ -78,38 +79,45 @@ def below_bound(
             problem = bounds.index[0]
         bound = bounds["bound"].get(problem, math.nan)
         if not math.isnan(bound):
-            where = place(row, [*keys_of(table), "metric", "statistic"])
-            fits = possible.printed(row["as_printed"]).high >= bound
-            yield checked(item, where, rule, row["value"], bound, fits)
+            where = describe_cell(row, [*list_keys(table), "metric", "statistic"])
+            fits = possible.read_printed(row["as_printed"]).high >= bound
+            yield build_row(item, where, rule, row["value"], bound, fits)
 
 
 # Rules that hold for any paper
 
 
-def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> list[dict]:
-    """All rows of the rules that hold for any paper.
+def check_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> list[dict]:
+    """Check the printed numbers of a paper by the rules that hold for any paper, and return all
+    rows.
 
-    tables: published numbers, by table, as from `printed_numbers`. specs: of each of them the table
-    that reproduces it: the columns within whose values its rows are ranked, metrics of which only
-    some runs count, the orders that its rows must keep.
+    tables: published numbers, by table, as from `read_printed_numbers`. specs: for each of them the
+    table that reproduces it: the columns within whose values its rows are ranked, metrics of which
+    only some runs count, the orders that its rows must keep.
     """
     if not tables:
         return []
     rows = []
     for name, table in tables.items():
         picks = [entry.metric for entry in specs[name].values if entry.where]
-        rows += of_cells(name, table, picks)
-        rows += of_ranks(name, table, specs[name].across)
+        rows += check_cells(name, table, picks)
+        rows += check_ranks(name, table, specs[name].across)
         for rule in specs[name].monotone:
-            rows += of_orders(name, table, rule)
-    return [*together(rows), *of_middles(tables), *of_digits(tables)]
+            rows += check_orders(name, table, rule)
+    return [*merge_rows(rows), *check_middles(tables), *check_digits(tables)]
 
 
-def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
-    """What the statistics of one metric in one place can be beside each other."""
-    keys = keys_of(table)
-    for rows in groups(table, [*keys, "metric"]):
-        where, metric = place(rows.iloc[0], [*keys, "metric"]), METRICS[rows["metric"].iloc[0]]
+def check_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
+    """Check the statistics of each metric in each place of a table beside each other.
+
+    picks: metrics for which only some of the runs count.
+    """
+    keys = list_keys(table)
+    for rows in group_rows(table, [*keys, "metric"]):
+        where, metric = (
+            describe_cell(rows.iloc[0], [*keys, "metric"]),
+            METRICS[rows["metric"].iloc[0]],
+        )
         texts = dict(zip(rows["statistic"], rows["as_printed"]))
         sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(sizes.max()) if len(sizes) else 0
@@ -119,29 +127,30 @@ def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]
             and rows["metric"].iloc[0] not in picks
             and sizes.nunique() == 1
         )
-        for name, rule, limit, fits, told in _of_cell(texts, n, metric, whole):
+        for name, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
             of_number = f"{where}, statistic={name}"
-            yield checked(item, of_number, rule, float(texts[name]), limit, fits, told)
+            yield build_row(item, of_number, rule, float(texts[name]), limit, fits, told)
 
 
-def _of_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iterator[tuple]:
-    """Statistic, rule, limit, whether the number obeys, and the arithmetic.
+def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iterator[tuple]:
+    """Check the statistics of one cell; yield for each rule: statistic, rule, limit, whether the
+    number obeys, and the arithmetic.
 
     texts: statistic -> the number as printed. n: how many values are behind them, 0 if the paper
     does not say; with `whole` false they are only those of some of these runs.
     """
-    numbers = {name: possible.printed(text) for name, text in texts.items()}
+    numbers = {name: possible.read_printed(text) for name, text in texts.items()}
     if "count" in numbers and n:
         count = numbers["count"].value
         fits = count.denominator == 1 and 0 <= count <= n
         rule = f"a count of {n} runs is a whole number up to {n}"
         yield "count", rule, n, fits, f"0 <= {float(count):.10g} <= {n}"
     for low, high in itertools.pairwise(name for name in _IN_ORDER if name in numbers):
-        fits = possible.in_order(numbers[low], numbers[high])
+        fits = possible.is_in_order(numbers[low], numbers[high])
         yield low, f"{low} <= {high}", numbers[high].value, fits, f"{texts[low]} <= {texts[high]}"
     ends = {"min", "max"} <= set(numbers)
     if ends and "mean" in numbers:
-        low, high = possible.mean_limits(numbers["min"], numbers["max"], n)
+        low, high = possible.compute_mean_limits(numbers["min"], numbers["max"], n)
         fits = low <= numbers["mean"].high and numbers["mean"].low <= high
         rule = "a mean lies between (max + (n - 1) min) / n and (min + (n - 1) max) / n"
         limit = low if numbers["mean"].high < low else high
@@ -158,20 +167,20 @@ def _of_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iter
         return
     std, text = numbers["std"], texts["std"]
     if ends:
-        low, _ = possible.std_of_range(numbers["min"], numbers["max"], n)
+        low, _ = possible.compute_std_limits(numbers["min"], numbers["max"], n)
         # Fewer values can have a larger one.
-        _, high = possible.std_of_range(numbers["min"], numbers["max"], n if whole else 2)
+        _, high = possible.compute_std_limits(numbers["min"], numbers["max"], n if whole else 2)
         rule = (
             "a standard deviation lies between (max - min) / sqrt(2 (n - 1)) and (max - min) / "
             "2 x sqrt(n / (n - 1))"
         )
         limit, fits = low if std.high < low else high, low <= std.high and std.low <= high
         yield "std", rule, limit, fits, f"n = {n or '?'}: {low:.6g} <= {text} <= {high:.6g}"
-    least = numbers["min"].low if "min" in numbers else possible.finite(metric.least)
-    most = numbers["max"].high if "max" in numbers else possible.finite(metric.most)
+    least = numbers["min"].low if "min" in numbers else possible.convert_end(metric.least)
+    most = numbers["max"].high if "max" in numbers else possible.convert_end(metric.most)
     if "mean" in numbers and least is not None and n > 1:
         most = most if whole else None
-        limit = possible.std_of_mean(numbers["mean"], n, least, most)
+        limit = possible.compute_largest_std(numbers["mean"], n, least, most)
         above = "" if most is None else f" or above {float(most):.10g}"
         rule = (
             "the largest standard deviation of values with this mean, none below "
@@ -180,35 +189,37 @@ def _of_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iter
         yield "std", rule, limit, float(std.low) <= limit, f"n = {n}: {text} <= {limit:.6g}"
 
 
-def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dict]:
-    """Mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2.
+def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dict]:
+    """Check that mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2.
 
-    columns: the key columns within whose values rows are ranked; those that the file lacks do not
+    columns: the key columns within whose values rows are ranked; columns that the file lacks do not
     matter.
     """
-    keys = keys_of(table)
+    keys = list_keys(table)
     ranks = table[(table["statistic"] == "mean") & (table["metric"] == "rank")]
     within = [column for column in columns if column in keys]
-    for group in groups(ranks, within):
+    for group in group_rows(ranks, within):
         count, texts = len(group), group["as_printed"].to_list()
         if count < 2:
             continue
-        numbers = [possible.printed(text) for text in texts]
+        numbers = [possible.read_printed(text) for text in texts]
         added, total = float(sum(each.value for each in numbers)), count * (count + 1) // 2
         arithmetic = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
-        location = place(group.iloc[0], [*within, "metric"]) + ", all rows"
+        location = describe_cell(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        yield checked(item, location, rule, added, total, possible.are_ranks(numbers), arithmetic)
+        yield build_row(
+            item, location, rule, added, total, possible.can_be_ranks(numbers), arithmetic
+        )
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             arithmetic = f"1 <= {row['as_printed']} <= {count}"
-            of_row = place(row, [*keys, "metric"])
-            yield checked(item, of_row, rule, row["value"], limit, fits, arithmetic)
+            of_row = describe_cell(row, [*keys, "metric"])
+            yield build_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
-        if possible.are_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
+        if possible.can_be_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
             n = int(sizes[0])
-            apart, critical, chi_square, p, least = friedman(group["value"].to_numpy(), n)
+            apart, critical, chi_square, p, least = compute_friedman(group["value"].to_numpy(), n)
             rule = (
                 f"the mean ranks tell rows apart: Friedman's test from the ranks, if of {n} runs, "
                 "at 5 %"
@@ -218,13 +229,14 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
                 f"the largest difference is {apart:.2g}, the critical one {critical:.3g}; "
                 f"p is below {LEVEL:g} from {least} runs on"
             )
-            yield checked(item, location, rule, apart, critical, bool(p < LEVEL), arithmetic)
+            yield build_row(item, location, rule, apart, critical, bool(p < LEVEL), arithmetic)
 
 
-def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:
-    """The largest difference of mean ranks (k,) of n units, the critical one of Nemenyi, and
-    Friedman's chi-square with its p, without ties; and the least number of units with which the
-    same ranks would differ.
+def compute_friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:
+    """Compute Friedman's test, without ties, from mean ranks (k,) over n units.
+
+    Returns the largest difference of ranks, the critical one of Nemenyi, chi-square, p, and the
+    least number of units with which the same ranks would differ.
 
     Source: Demšar (2006), "Statistical comparisons of classifiers over multiple data sets", Journal
     of Machine Learning Research 7, 1.
@@ -240,26 +252,26 @@ def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int
     return float(np.ptp(ranks)), critical, chi_square, p, least
 
 
-def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
-    """Numbers that must rise or fall along a column, each beside the one before it."""
+def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
+    """Check numbers that must rise or fall along a column, each beside the one before it."""
     numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
-    keys = keys_of(table)
+    keys = list_keys(table)
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
-    for group in groups(numbers, others):
+    for group in group_rows(numbers, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
-            pair = [possible.printed(each["as_printed"]) for each in (before, row)]
-            fits = possible.in_order(*(pair if rule.direction == "up" else pair[::-1]))
-            where = place(row, [*keys, "metric", "statistic"])
+            pair = [possible.read_printed(each["as_printed"]) for each in (before, row)]
+            fits = possible.is_in_order(*(pair if rule.direction == "up" else pair[::-1]))
+            where = describe_cell(row, [*keys, "metric", "statistic"])
             told = f"{before['as_printed']} {sign} {row['as_printed']}"
-            yield checked(item, where, words, row["value"], before["value"], fits, told)
+            yield build_row(item, where, words, row["value"], before["value"], fits, told)
 
 
-def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Where means of lengths lie between minimum and maximum: the root mean square distance from
-    the middle, in ranges, beside that of as many sets of normal numbers.
+def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    """Check where means of lengths lie between minimum and maximum: the root mean square distance
+    from the middle, in ranges, beside that of as many sets of normal numbers.
 
     Numbers with a tail lie farther from the middle than normal ones.
     """
@@ -276,25 +288,27 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         wide = wide.reindex(columns=["min", "mean", "max"]).dropna()
         if len(wide) < LEAST_MEANS or n < 2:
             continue
-        apart, count = float(_from_middle(*wide.to_numpy().T)), len(wide)
+        apart, count = float(_measure_from_middle(*wide.to_numpy().T)), len(wide)
         drawn = generator(f"audit/middles/{n:g}").normal(size=(DRAWN, count, int(n)))
-        sets = _from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
+        sets = _measure_from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
         p, median = float(np.mean(sets <= apart)), float(np.median(sets))
         rule = f"means of {n:g} lengths lie as far from the middle of their range as normal ones do"
         told = f"{apart:.3g} ranges, normal ones {median:.3g}; p = {p:.2g}"
         where = f"{count} means between minimum and maximum"
         items = ", ".join(wide.index.unique("item"))
-        yield checked(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
+        yield build_row(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
 
 
-def _from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Root mean square distance of means (..., k) from the middle of their range, in ranges."""
+def _measure_from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Measure how far means (..., k) lie from the middle of their ranges: root mean square, in
+    ranges.
+    """
     return np.sqrt(np.mean(((mean - low) / (high - low) - 0.5) ** 2, axis=-1))
 
 
-def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """All decimals of a paper's numbers: Pearson's test of equal chances, where there are enough
-    that lie far below the spread of their metric.
+def check_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    """Check by Pearson's test that all digits are equally likely among a paper's decimals, if
+    enough of them lie far below the spread of their metric.
 
     A number that several tables repeat counts once; numbers of 1 to n runs, such as counts, are
     left out, and so are whole numbers, whose means do not have all decimals.
@@ -324,34 +338,35 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     items = ", ".join(every["item"].unique())
     where = f"{len(digits)} decimals of {len(every)} numbers"
     fits = bool(chance.pvalue >= DIGITS_LEVEL)
-    yield checked(items, where, rule, max(counts), len(digits) / 10, fits, told)
+    yield build_row(items, where, rule, max(counts), len(digits) / 10, fits, told)
 
 
-def audited(
+def check_paper(
     job: Any,
     of_paper: Callable[[dict[str, pd.DataFrame]], list[dict]],
     experiment_files: Mapping[str, Files],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
-    """The audit of a paper as a table with `COLUMNS`. job: the job (`jobs.Audit`).
+    """Check all printed numbers of a paper and return its audit, a table with `COLUMNS`.
 
-    experiment_files: by experiment. files: of published numbers, by table.
+    job: the job (`jobs.Audit`). of_paper: the rules for this paper alone. experiment_files: by
+    experiment. files: of published numbers, by table.
     """
-    published = {name: printed_numbers(file) for name, file in files.items()}
+    published = {name: read_printed_numbers(file) for name, file in files.items()}
     rows = []
     for name, spec in job.tables.items():
         # Bounds of maps that a paper does not print say nothing of its numbers.
         if name not in job.reconstructed:
             bounds = pd.read_parquet(experiment_files[spec.experiment].bounds).set_index("problem")
-            rows += below_bound(name, published[name], bounds, spec.primary)
-    rows += of_any_paper({name: published[name] for name in job.tables}, job.tables)
+            rows += check_bounds(name, published[name], bounds, spec.primary)
+    rows += check_any_paper({name: published[name] for name in job.tables}, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
             made, _ = problems.read(experiment_files[spec.experiment].problems)
-            rows += identified.of_table(name, published[name], spec.identify, made)
-    return table(job.study, rows + of_paper(published))
+            rows += identified.check_declared_paths(name, published[name], spec.identify, made)
+    return build_table(job.study, rows + of_paper(published))
 
 
-def table(study: str, rows: list[dict]) -> pd.DataFrame:
-    """The rows of an audit as a table with `COLUMNS`."""
+def build_table(study: str, rows: list[dict]) -> pd.DataFrame:
+    """Build a table with `COLUMNS` from the rows of a study's audit."""
     return pd.DataFrame([{"study": study, **row} for row in rows], columns=COLUMNS)

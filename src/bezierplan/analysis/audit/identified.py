@@ -2,7 +2,7 @@
 or straight and diagonal moves to the decimals of a rounded square root of two.
 
 Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a
-length with four decimals can tell which paths it belongs to. `in_problem` enumerates every free
+length with four decimals can tell which paths it belongs to. `find_polylines` enumerates every free
 polyline with a limited number of edges between two cells, keeps those whose length rounds to the
 printed one, and says how likely a number nearby would match by chance.
 
@@ -20,8 +20,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import possible
-from bezierplan.analysis.audit.rows import checked, place
-from bezierplan.analysis.results import keys_of
+from bezierplan.analysis.audit.rows import build_row, describe_cell
+from bezierplan.analysis.results import list_keys
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.grid import Grid
@@ -48,7 +48,7 @@ class Identification(NamedTuple):
 
     paths: the cells of each of those with fewest edges, or numbers of moves. chance: share of the
     numbers nearby, as printed, that some path matches. length: of the first path, in cells; NaN
-    without one. noun: what the numbers of `paths` are.
+    without one. noun: the word for the numbers of `paths`.
     """
 
     paths: list[tuple[int, ...]]
@@ -67,9 +67,9 @@ class Ways(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def ways(grid: Grid) -> Ways:
-    """All free edges between centres of free cells, of which no one passes along others: an edge is
-    what a planner draws.
+def list_edges(grid: Grid) -> Ways:
+    """List all free edges between centres of free cells. No edge passes along others, because an
+    edge is what a planner draws.
     """
     import shapely
 
@@ -92,17 +92,22 @@ def ways(grid: Grid) -> Ways:
     return Ways(cells, lengths)
 
 
-def applies(entry: Identify, row: dict) -> bool:
-    """Whether an enumeration is declared for a published number, from the columns of its row."""
+def is_declared(entry: Identify, row: dict) -> bool:
+    """Return whether an enumeration is declared for a published number, given as its row."""
     where = {"metric": entry.metric} | entry.where
     if entry.statistic:
         where["statistic"] = entry.statistic
     return all(row.get(column) in convert_to_list(wanted) for column, wanted in where.items())
 
 
-def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identification | None:
-    """The free polylines of at most so many edges from start to target whose length is printed so,
-    in the problem's unit; None unless both are centres of cells of a grid.
+def find_polylines(
+    problem: Problem, value: float, decimals: int, edges: int
+) -> Identification | None:
+    """Find the free polylines from start to target whose length, in the problem's unit, is printed
+    as this value.
+
+    edges: the most edges of a polyline. None unless start and target are centres of cells of a
+    grid.
     """
     grid = problem.workspace
     if not isinstance(grid, Grid):
@@ -115,29 +120,29 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     if not np.allclose([grid.centre(cell) for cell in cells], ends):
         return None
     printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
-    free = ways(grid)
+    free = list_edges(grid)
     first, last = (int(np.searchsorted(free.cells, cell)) for cell in cells)
-    reached = _reached(free, first, printed + NEARBY + half, last, edges)
+    reached = _list_reachable_lengths(free, first, printed + NEARBY + half, last, edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
-    paths = _paths(free, reached, last, printed, half)
+    paths = _trace_paths(free, reached, last, printed, half)
     legs = itertools.pairwise(paths[0]) if paths else ()
     return Identification(
         [tuple(int(free.cells[place]) for place in path) for path in paths],
-        _chance(every, printed, half),
+        _compute_chance(every, printed, half),
         sum(free.lengths[one, other] for one, other in legs) if paths else math.nan,
     )
 
 
-def of_moves(problem: Problem, value: float, diagonal: float) -> Identification:
-    """The straight and diagonal moves from start to target whose length is printed so, up to the
-    decimals of the diagonal move: those beyond are cut off.
+def find_moves(problem: Problem, value: float, diagonal: float) -> Identification:
+    """Find the straight and diagonal moves from start to target whose length is printed as this
+    value, cut off after the decimals of the diagonal move.
 
-    Each of the two differences between start and target says how many moves there are at least, and
-    their sum whether the number of straight ones is even.
+    Each of the two differences between start and target says how many moves there are at least;
+    their sum says whether the number of straight ones is even.
     """
     cell = problem.workspace.cell
     apart = [round(abs(b - a) / cell) for a, b in zip(problem.start, problem.target)]
-    places = possible.decimals(str(diagonal))
+    places = possible.count_decimals(str(diagonal))
     unit, value = 10.0**-places, value / cell
     printed = math.floor(value / unit + _ROUNDING) * unit
     most = int(value + NEARBY) + 1
@@ -148,23 +153,25 @@ def of_moves(problem: Problem, value: float, diagonal: float) -> Identification:
         if straight + 2 * rest >= sum(apart) and straight + rest >= max(apart)
     ]
     lengths = np.array([straight + diagonal * rest for straight, rest in moves])
-    paths = [moves[each] for each in np.flatnonzero(_near(lengths, printed, unit / 2))]
+    paths = [moves[each] for each in np.flatnonzero(_is_near(lengths, printed, unit / 2))]
     length = paths[0][0] + diagonal * paths[0][1] if paths else math.nan
-    chance = _chance(np.sort(lengths), printed, unit / 2)
+    chance = _compute_chance(np.sort(lengths), printed, unit / 2)
     return Identification(
         paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:"
     )
 
 
-def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Identification | None:
-    """The paths that a declaration names, of a length that is printed so."""
+def find_paths(
+    entry: Identify, problem: Problem, value: float, decimals: int
+) -> Identification | None:
+    """Find the paths that a declaration names and whose length is printed as this value."""
     if entry.diagonal is None:
-        return in_problem(problem, value, decimals, entry.edges)
-    return of_moves(problem, value, entry.diagonal)
+        return find_polylines(problem, value, decimals, entry.edges)
+    return find_moves(problem, value, entry.diagonal)
 
 
-def in_words(identification: Identification) -> str:
-    """The paths and the chance of a match."""
+def describe_paths(identification: Identification) -> str:
+    """Describe the matching paths and the chance of a match in one line."""
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
     more = len(identification.paths) - len(shown)
     cells = (
@@ -175,16 +182,16 @@ def in_words(identification: Identification) -> str:
     return f"{cells}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
 
 
-def of_table(
+def check_declared_paths(
     item: str, published: pd.DataFrame, entries: list[Identify], problems: dict[str, Problem]
 ) -> Iterator[dict]:
-    """Rows of the audit: each published number for which an enumeration is declared, and one row a
-    declaration with the chance of all.
+    """Check the published numbers for which an enumeration is declared; yield a row for each, and
+    one row a declaration with the chance of all.
 
-    published: as from `results.printed_numbers`. problems: by name; a
-    number's is in its column `problem`. A number that no path has is no contradiction.
+    published: as from `results.read_printed_numbers`. problems: by name; a number's problem is in
+    its column `problem`. A number that no path has is no contradiction.
     """
-    keys = keys_of(published)
+    keys = list_keys(published)
     for entry in entries:
         tries = []
         what = (
@@ -195,18 +202,22 @@ def of_table(
         rule = f"{entry.because}: the length of {what}"
         for row in published.to_dict("records"):
             problem = problems.get(row.get("problem", row.get("workspace")))
-            if not applies(entry, row) or problem is None:
+            if not is_declared(entry, row) or problem is None:
                 continue
-            path = sought(entry, problem, row["value"], possible.decimals(row["as_printed"]))
+            path = find_paths(
+                entry, problem, row["value"], possible.count_decimals(row["as_printed"])
+            )
             if path is None:
                 continue
             tries.append(path)
-            location = place(row, [*keys, "metric", *(["statistic"] if entry.statistic else [])])
+            location = describe_cell(
+                row, [*keys, "metric", *(["statistic"] if entry.statistic else [])]
+            )
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
-            yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
+            yield build_row(item, location, rule, row["value"], limit, fits, describe_paths(path))
         if tries:
             matched = sum(bool(path.paths) for path in tries)
-            chance = at_least(matched, [path.chance for path in tries])
+            chance = compute_chance_of_at_least(matched, [path.chance for path in tries])
             told = (
                 f"{matched} of {len(tries)} are such lengths; the chance of as many: {chance:.2g}"
             )
@@ -216,20 +227,22 @@ def of_table(
                 if wanted
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tries) or None
-            yield checked(item, location, rule, matched, len(tries), fits, told)
+            yield build_row(item, location, rule, matched, len(tries), fits, told)
 
 
-def at_least(count: int, chances: list[float]) -> float:
-    """The chance that at least so many of independent events happen."""
+def compute_chance_of_at_least(count: int, chances: list[float]) -> float:
+    """Compute the chance that at least so many of independent events happen."""
     exactly = np.ones(1)
     for chance in chances:
         exactly = np.convolve(exactly, [1 - chance, chance])
     return float(exactly[count:].sum())
 
 
-def _reached(ways: Ways, first: int, most: float, last: int, edges: int) -> list[list[np.ndarray]]:
-    """By number of edges and cell: the lengths, each once, of the polylines from the first place,
-    as far as they can still end in time.
+def _list_reachable_lengths(
+    ways: Ways, first: int, most: float, last: int, edges: int
+) -> list[list[np.ndarray]]:
+    """List the lengths of polylines from the first cell, by number of edges and cell, each once, as
+    far as they can still reach the last cell within `most`.
     """
     from scipy.sparse import csgraph
 
@@ -255,18 +268,20 @@ def _reached(ways: Ways, first: int, most: float, last: int, edges: int) -> list
     return levels
 
 
-def _paths(
+def _trace_paths(
     ways: Ways, levels: list[list[np.ndarray]], last: int, printed: float, half: float
 ) -> list[tuple[int, ...]]:
-    """Places of the matching polylines with fewest edges, found backwards from their ends."""
+    """Trace the matching polylines with fewest edges backwards from their ends; return the places
+    of their cells.
+    """
     for edges in range(1, len(levels)):
-        if _near(levels[edges][last], printed, half).any():
-            walks = _walks(ways, levels, edges, (last,), printed, half)
+        if _is_near(levels[edges][last], printed, half).any():
+            walks = _extend_path(ways, levels, edges, (last,), printed, half)
             return list(itertools.islice(walks, MOST_PATHS))
     return []
 
 
-def _walks(
+def _extend_path(
     ways: Ways,
     levels: list[list[np.ndarray]],
     left: int,
@@ -274,25 +289,25 @@ def _walks(
     length: float,
     half: float,
 ) -> Iterator[tuple[int, ...]]:
-    """All ways to extend a path, given from its end, by places from which the rest of its length is
-    left.
+    """Extend a path, given from its end, in all ways that leave the rest of its length reachable
+    with `left` more edges.
     """
     if not left:
         yield path[::-1]
         return
     for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
         rest = length - ways.lengths[path[-1], other]
-        if _near(levels[left - 1][other], rest, half).any():
-            yield from _walks(ways, levels, left - 1, (*path, int(other)), rest, half)
+        if _is_near(levels[left - 1][other], rest, half).any():
+            yield from _extend_path(ways, levels, left - 1, (*path, int(other)), rest, half)
 
 
-def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
-    """Which lengths round to a printed one."""
+def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
+    """Return which lengths round to a printed one."""
     return np.abs(lengths - printed) <= half + 1e-7
 
 
-def _chance(lengths: np.ndarray, printed: float, half: float) -> float:
-    """Share of the printed numbers within `NEARBY` to which some length rounds."""
+def _compute_chance(lengths: np.ndarray, printed: float, half: float) -> float:
+    """Compute the share of the printed numbers within `NEARBY` to which some length rounds."""
     numbers = printed + 2 * half * np.arange(
         -round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1
     )

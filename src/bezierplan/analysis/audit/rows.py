@@ -14,12 +14,12 @@ RELATIONS = {
 }
 
 
-def place(row: Mapping, keys: Iterable[str]) -> str:
-    """Which cell a row of published numbers is, in words."""
+def describe_cell(row: Mapping, keys: Iterable[str]) -> str:
+    """Describe which cell a row of published numbers is, such as `method=ga, metric=length`."""
     return ", ".join(f"{key}={row[key]}" for key in keys)
 
 
-def checked(
+def build_row(
     item: str,
     location: str,
     rule: str,
@@ -28,33 +28,40 @@ def checked(
     consistent: bool | None,
     arithmetic: str = "",
 ) -> dict:
-    """A row of an audit, with `COLUMNS` but for the study. consistent: None if the rule cannot
-    tell.
+    """Build a row of an audit, with `COLUMNS` but for the study. consistent: None if the rule
+    cannot tell.
     """
     values = (item, location, rule, printed, float(limit), consistent, arithmetic)
     return dict(zip(COLUMNS[1:], values, strict=True))
 
 
-def together(rows: Iterable[dict]) -> list[dict]:
-    """Rows with those of a rule that several numbers obey as one, which says how many they are."""
+def merge_rows(rows: Iterable[dict]) -> list[dict]:
+    """Merge the rows of each rule that several numbers obey into one, which says how many
+    they are.
+    """
     by_rule: dict[str, list[dict]] = {}
     for row in rows:
         by_rule.setdefault(row["rule"], []).append(row)
-    return [row for rule, own in by_rule.items() for row in _of_rule(rule, own)]
+    return [row for rule, own in by_rule.items() for row in _merge_rows_of_rule(rule, own)]
 
 
-def _of_rule(rule: str, rows: list[dict]) -> list[dict]:
+def _merge_rows_of_rule(rule: str, rows: list[dict]) -> list[dict]:
+    """Merge the obeying rows of one rule; rows of numbers that disobey, or that the rule cannot
+    judge, stay.
+    """
     obeyed = [row for row in rows if row["consistent"] is True]
     if len(obeyed) < 2:
         return rows
     items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))
     count, every = len(obeyed), len(rows)
-    row = checked(items, f"{count} of {every} numbers", rule, count, every, True)
+    row = build_row(items, f"{count} of {every} numbers", rule, count, every, True)
     return [*(other for other in rows if other["consistent"] is not True), row]
 
 
-def compared(
+def compare_with_limit(
     item: str, location: str, rule: str, printed: float, relation: str, limit: float
 ) -> dict:
-    """The row of a number that should be <, <=, ==, >= or > than its limit."""
-    return checked(item, location, rule, printed, limit, bool(RELATIONS[relation](printed, limit)))
+    """Build the row of a number that should be <, <=, ==, >= or > than its limit."""
+    return build_row(
+        item, location, rule, printed, limit, bool(RELATIONS[relation](printed, limit))
+    )

@@ -16,27 +16,30 @@ import re
 
 import pandas as pd
 
-from bezierplan.analysis.audit.rows import compared, together
+from bezierplan.analysis.audit.rows import compare_with_limit, merge_rows
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """The rows of the audit. published: tables of printed numbers, by file name, with the rules."""
+def check_rules(published: dict[str, pd.DataFrame]) -> list[dict]:
+    """Check the rules that a study's file lists, and return the rows of the audit.
+
+    published: tables of printed numbers, by file name, with the rules.
+    """
     rules = published["rules"].fillna({"cell": "", "of": "", "limit": 1.0})
-    return together(
-        compared(
+    return merge_rows(
+        compare_with_limit(
             rule.item,
             rule.place,
             rule.rule,
-            _total(published, rule.item, rule.cell or rule.place),
+            _sum_cells(published, rule.item, rule.cell or rule.place),
             rule.relation,
-            rule.limit * (_total(published, rule.item, rule.of) if rule.of else 1),
+            rule.limit * (_sum_cells(published, rule.item, rule.of) if rule.of else 1),
         )
         for rule in rules.itertuples()
     )
 
 
-def _total(published: dict[str, pd.DataFrame], item: str, cell: str) -> float:
-    """The sum of the printed numbers that a cell names."""
+def _sum_cells(published: dict[str, pd.DataFrame], item: str, cell: str) -> float:
+    """Sum the printed numbers that a cell names."""
     table, _, columns = cell.rpartition(": ")
     rows = published[table or item]
     for column, values in re.findall(r"(\w+)=([^,]+)", columns):

@@ -47,18 +47,22 @@ class ClaimTables(NamedTuple):
 
 
 def read_checks(file: str) -> pd.DataFrame:
-    """Return the checks in a file. A column of marks may be of 0 alone, which is a word."""
+    """Read the checks in a file. Marks are read as text, because a column of them may be of 0
+    alone.
+    """
     return pd.read_csv(file, dtype={"mark": str, "mark_family": str})
 
 
-def with_dependence(
+def add_dependence(
     claims: pd.DataFrame,
     readings: Mapping[str, ClaimTables],
     meanings: Mapping[str, str],
     names: Mapping[str, str],
 ) -> pd.DataFrame:
-    """Return the claims of a study with what their verdicts depend on. readings: by name. meanings:
-    reading -> what it changes, in words. names: variant -> its values in words.
+    """Add to the claims of a study what their verdicts depend on.
+
+    readings: by name. meanings: reading -> what it changes, in words. names: variant -> its values
+    in words.
     """
     under = {name: each.claims.set_index("id")["verdict"] for name, each in readings.items()}
     claims = claims.assign(readings="")
@@ -74,7 +78,7 @@ def with_dependence(
         others = claims[~primary & decided & (claims["id"] == claim["id"])]
         others = others[others["verdict"] != claim["verdict"]]
         words = [
-            f"{verdict} with {_named([names[each] for each in variants])}"
+            f"{verdict} with {_join_names([names[each] for each in variants])}"
             for verdict, variants in others.groupby("verdict", sort=False)["variant"]
         ]
         side = SIDES[claim["verdict"]]
@@ -90,14 +94,13 @@ def with_dependence(
     return claims
 
 
-def _named(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
+    """Join the names of variants, or count them if they are many."""
     return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} variants"
 
 
-def by_check(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
-    """Return a row for each claim, each of its primary checks, and each reading under which it was
-    judged, with `COLUMNS`.
-    """
+def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
+    """List each primary check of each claim under each reading, with `COLUMNS`."""
     modes, rows = {claim.id: claim.holds for claim in claims}, []
     for name, (judged, checks) in readings.items():
         first = judged.loc[judged["primary"].astype(bool), ["id", "variant", "verdict"]]
@@ -109,7 +112,7 @@ def by_check(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd
                 against.to_dict()
                 | {
                     "reading": name,
-                    "verdict_on_check": verdicts.verdict(marks, in_family, modes[claim]),
+                    "verdict_on_check": verdicts.judge_marks(marks, in_family, modes[claim]),
                     "holds": f"{marks.count('+')} of {len(marks)}",
                 }
             )

@@ -107,48 +107,48 @@ class ClaimCheck(Model):
 
     @property
     def primary(self) -> bool:
-        """Whether it counts for the verdict."""
+        """Return whether it counts for the verdict."""
         return not (self._reported or self.secondary)
 
-    def reported(self) -> Self:
-        """The same check as one that is only shown."""
+    def report_only(self) -> Self:
+        """Return a copy of the check that is shown and does not count for the verdict."""
         check = self.but()
         check._reported = True
         return check
 
     @property
     def statistic_shown(self) -> str:
-        """The statistic that is compared; empty for a kind without a choice."""
+        """Return the statistic that is compared; empty for a kind without a choice."""
         return self.statistic or "rank" if "statistic" in type(self).model_fields else ""
 
     @property
     def timed(self) -> bool:
-        """Whether it is of seconds."""
+        """Return whether its metric is in seconds."""
         return METRICS[self.metric or ""].unit == "s"
 
     @property
     def relative(self) -> bool:
-        """Whether effects are relative to the value of the other group."""
+        """Return whether effects are relative to the value of the other group."""
         return self.scale == "relative"
 
     @property
     def experiments(self) -> list[str]:
-        """Experiments whose runs are judged."""
+        """Return the experiments whose runs are judged."""
         return convert_to_list(self.experiment or [])
 
     @property
     def cells(self) -> str | None:
-        """The column whose values are compared, if any."""
+        """Return the column whose values are compared, if any."""
         return getattr(self, self.cells_key) if self.cells_key else None
 
     @property
     def groups_named(self) -> list:
-        """All groups that the check names."""
+        """Return all groups that the check names."""
         lists = [convert_to_list(each) for key in GROUP_KEYS for each in getattr(self, key) or []]
         return list(itertools.chain.from_iterable(lists))
 
 
-def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
+def refuse_same_group(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
     """Raise the error of a check that compares a group with itself."""
     for group, other in pairs:
         if group == other:
@@ -156,7 +156,7 @@ def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
 
 
 class OfRuns(ClaimCheck):
-    """Checks of runs."""
+    """What all checks share that judge runs."""
 
     experiment: build_list_type(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
@@ -176,7 +176,9 @@ class OfRuns(ClaimCheck):
 
     @model_validator(mode="after")
     def _check_columns(self) -> "OfRuns":
-        """A column is either compared, or told apart, or averaged, or numbers replicates."""
+        """Check that each column has one part: compared, told apart, averaged, or the number of
+        replicates.
+        """
         named = {
             key: convert_to_list(getattr(self, key, None) or [])
             for key in ("every", "pool", self.cells_key, "replicate")
@@ -197,21 +199,21 @@ class OfRuns(ClaimCheck):
 
     @property
     def printed_metric(self) -> str:
-        """The metric of the printed numbers: seconds, where counted work is judged in their
+        """Return the metric of the printed numbers: seconds, where counted work is judged in their
         place.
         """
         return self._printed_metric or self.metric
 
-    def of_work(self) -> Self:
-        """The check of counted work in place of seconds."""
+    def use_work(self) -> Self:
+        """Return the check of counted work in place of seconds."""
         check = self.but(metric=self.work)
         check._printed_metric = self.metric
         return check
 
     @property
     def limit(self) -> tuple[str, float] | None:
-        """The event whose share is taken, such as `below` and a number, if it is not the metric
-        itself.
+        """Return the event whose share is taken, such as `below` and a number, if it is not the
+        metric itself.
         """
         return next(iter(self.event.items())) if self.event else None
 

@@ -1,4 +1,4 @@
-"""The model of a sentence of a paper: its checks, each a model of its own kind (`kinds`)."""
+"""The model of a sentence of a paper: its checks, each a model of its own kind (`list_kinds`)."""
 
 import math
 from typing import Annotated, Literal, Self
@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.check import ClaimCheck
-from bezierplan.analysis.claims.kinds import kinds
+from bezierplan.analysis.claims.kinds import list_kinds
 from bezierplan.schema.model import (
     Line,
     Model,
@@ -29,7 +29,7 @@ ClaimId = Annotated[str, match_text(r"C[1-9][0-9]*", "C and a number, such as C1
 
 
 class Claim(Model):
-    """A sentence of the paper."""
+    """A sentence of the paper, or a finding of ours, with the checks that decide it."""
 
     id: ClaimId = Field(description="C and a number, such as C1")
     place: Line = Field(description="where the paper says it")
@@ -73,7 +73,7 @@ class Claim(Model):
         "condition",
         min_length=1,
     )
-    checks: list[Annotated[ClaimCheck, build_choice_type("test", kinds())]] = Field(
+    checks: list[Annotated[ClaimCheck, build_choice_type("test", list_kinds())]] = Field(
         description="a list of checks, at least one of them primary",
         min_length=1,
         max_length=MOST_CHECKS,
@@ -92,11 +92,11 @@ class Claim(Model):
                 )
         return self
 
-    def in_primary_variant(self) -> Self:
-        """The same claim without its other variants."""
+    def select_primary_variant(self) -> Self:
+        """Return the same claim without its other variants."""
         return self.but(variants={column: values[:1] for column, values in self.variants.items()})
 
     @property
     def artefacts(self) -> list[str]:
-        """Tables and figures that show it."""
+        """Return the tables and figures that show it."""
         return convert_to_list(self.artefact)

@@ -15,11 +15,16 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Contrast
-from bezierplan.analysis.claims.kinds import kind_of
+from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Display, Material, Untestable
-from bezierplan.analysis.claims.published import PrintedTable, printed, printed_table, rows_of_cell
+from bezierplan.analysis.claims.published import (
+    PrintedTable,
+    average_printed,
+    find_cell,
+    select_metric,
+)
 from bezierplan.analysis.numbers import comparison
-from bezierplan.analysis.results import pick, repeated, select
+from bezierplan.analysis.results import is_repeated, pick, select
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import convert_to_list
 
@@ -28,35 +33,36 @@ REST = "rest"
 _FACTORS = ["experiment", "condition", "method"]
 
 
-def with_rest(check: ClaimCheck, claim: Claim, material: Material) -> ClaimCheck:
-    """The check with `rest` replaced by the groups of the claim's artefact that the check does not
-    name, without variants of methods: a sentence of the paper is about its own.
+def fill_rest(check: ClaimCheck, claim: Claim, material: Material) -> ClaimCheck:
+    """Replace `rest` in a check by the groups of the claim's artefact that the check does not name.
+
+    Variants of methods are left out, because a sentence of the paper is about its own methods.
     """
     named = check.groups_named
     if REST not in named:
         return check
     left_out = {*named, *(material.study.variant_of if check.cells == "method" else ())}
-    rest = [each for each in _groups_of_artefact(check, claim, material) if each not in left_out]
+    rest = [each for each in _list_groups(check, claim, material) if each not in left_out]
     return check.but(
         **{
-            key: _filled(getattr(check, key), rest)
+            key: _replace_rest(getattr(check, key), rest)
             for key in GROUP_KEYS
             if key in check.model_fields_set
         }
     )
 
 
-def _filled(groups: list, rest: list) -> list:
-    """A list of groups, or of lists of them, with others in the place of `rest`."""
+def _replace_rest(groups: list, rest: list) -> list:
+    """Replace `rest` in a list of groups, or in lists of them, by other groups."""
     parts = [
-        [_filled(each, rest)] if isinstance(each, list) else rest if each == REST else [each]
+        [_replace_rest(each, rest)] if isinstance(each, list) else rest if each == REST else [each]
         for each in groups
     ]
     return list(itertools.chain.from_iterable(parts))
 
 
-def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
-    """The tables and figure panels among a claim's artefacts that show runs of the check's
+def _list_parts(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
+    """List the tables and figure panels among a claim's artefacts that show runs of the check's
     experiments.
     """
     return [
@@ -67,13 +73,13 @@ def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[
     ]
 
 
-def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list:
-    """Groups that an artefact shows, each once, in its order; all groups of the experiment if it
-    does not select any.
+def _list_groups(check: OfRuns, claim: Claim, material: Material) -> list:
+    """List the groups that an artefact shows, each once, in its order; all groups of the experiment
+    if it does not select any.
     """
     across = check.cells
     groups = []
-    for where in [part.where for part in _parts_of_artefact(check, claim, material)] or [{}]:
+    for where in [part.where for part in _list_parts(check, claim, material)] or [{}]:
         if across in where:
             groups += convert_to_list(where[across])
         else:
@@ -83,37 +89,39 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
     return list(dict.fromkeys(groups))
 
 
-def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contrast]:
-    """The comparisons of a check without `rest`, in an order independent of that of the runs.
+def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contrast]:
+    """Build the comparisons of a check without `rest`, in an order independent of that of the runs.
 
     Raises Untestable if its experiment was not run, has no such metric, or has no run that
     satisfies its `where`; Fault if runs of several conditions would be mixed.
     """
-    runs = _measured_runs(check, claim, material)
+    runs = _measure_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
     column, unit = check.cells, check.replicate
     every, pool = check.every, check.pool
-    tables = _published_tables(check, claim, material)
+    tables = _list_published_tables(check, claim, material)
     of_tables = [key for table in tables for key in table.keys if key in runs]
-    keys = list(dict.fromkeys(["experiment", *told_apart(check)[:-1], *of_tables]))
+    keys = list(dict.fromkeys(["experiment", *list_unit_columns(check)[:-1], *of_tables]))
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
-    if factor := mixed(check, runs):
+    if factor := find_mixed_factor(check, runs):
         what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     paired = check.paired
     if paired is None:
-        paired = _shares_draws(check, material)
+        paired = _has_shared_draws(check, material)
     comparison_list = []
     for condition, rows in _split(runs, every):
-        unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
+        unit_tables = {
+            name: _average_units(part, unit, column) for name, part in _split(rows, pool)
+        }
         conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
-        compared = list(kind_of(check).cells(check, rows))
+        compared = list(load_kind(check).cells(check, rows))
         printed_cells = {
             cell: [
-                rows_of_cell(
+                find_cell(
                     [row for row in part if column is None or row[column] == cell],
                     tables,
                     material.study.variant_of,
@@ -125,35 +133,35 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Contras
         pooled = rows.groupby(column or "method")["condition"].nunique().max()
         for terms, cells in compared:
             strata = {
-                key: effects.event(check, table.reindex(columns=cells).to_numpy())
+                key: effects.mark_events(check, table.reindex(columns=cells).to_numpy())
                 for key, table in unit_tables.items()
             }
-            numbers, number_of_runs = printed(
+            numbers, number_of_runs = average_printed(
                 check, list(zip(*(printed_cells[cell] for cell in cells)))
             )
             comparison_list.append(
                 Contrast(
                     terms=terms,
-                    place=tuple((key, _known(rows[key].iloc[0])) for key in every),
+                    place=tuple((key, _replace_nan(rows[key].iloc[0])) for key in every),
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=_is_boolean(check, material),
                     paired=paired,
-                    note=_note(check, rows, column, cells),
+                    note=_note_success_rates(check, rows, column, cells),
                     conditions=int(pooled),
                 )
             )
     return comparison_list
 
 
-def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:
-    """The runs of a check's conditions with the column `value`, which is NaN where a run does not
-    count.
+def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:
+    """Select the runs of a check's conditions and add the column `value`, which is NaN where a run
+    does not count.
 
     A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as
-    failed, if failures rank last): a place where no run satisfies it is kept.
+    failed, if failures rank last), so that a place where no run satisfies it is kept.
     """
     where = check.where
     conditions = {
@@ -167,17 +175,19 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         runs, problems = material.results[name].runs, material.results[name].problems
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
-            for part in _parts_of_artefact(check, claim, material)[:1]:
+            for part in _list_parts(check, claim, material)[:1]:
                 runs = select(runs, part.where)
         else:
             runs = select(runs, conditions)
         if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
             raise Untestable(f"the runs of {name} have no {check.metric}")
-        counting = _compared(runs, check)
-        counting = _picked(counting, check.pick.plain()) if check.pick else counting
-        values = metrics.values(counting, check.metric, problems).fillna(_failure(check))
+        counting = _select_groups(runs, check)
+        counting = _pick_runs(counting, check.pick.plain()) if check.pick else counting
+        values = metrics.compute_values(counting, check.metric, problems).fillna(
+            _choose_failure_value(check)
+        )
         computed = {
-            column: metrics.values(counting, column, problems)
+            column: metrics.compute_values(counting, column, problems)
             for column in outcomes
             if column not in counting
         }
@@ -187,13 +197,13 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
             values = values.fillna(np.inf)
         runs = select(runs.assign(value=values), conditions)
         # A share counts each run once.
-        frames.append(runs if check.cells else runs[~repeated(runs)])
+        frames.append(runs if check.cells else runs[~is_repeated(runs)])
     return pd.concat(frames, ignore_index=True)
 
 
-def _compared(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
-    """The runs whose values are needed: those of the groups that a check names, or all for ranks
-    among them.
+def _select_groups(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
+    """Select the runs of the groups that a check names; all runs for a metric that ranks them among
+    each other.
     """
     groups = check.groups_named
     return (
@@ -203,17 +213,17 @@ def _compared(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
     )
 
 
-def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
-    """One run of each condition and method that has a feasible one."""
+def _pick_runs(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
+    """Pick one run of each condition and method that has a feasible one."""
     chosen = [
         pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])
     ]
     return runs.loc[[run.name for run in chosen if run is not None]]
 
 
-def _failure(check: OfRuns) -> float:
-    """The value of a run without one: dropped, worse than any other, or one for which the event is
-    false.
+def _choose_failure_value(check: OfRuns) -> float:
+    """Return the value of a run without one: NaN to drop it, infinite if it is worse than any
+    other, or a value for which the event is false.
     """
     match check.failures:
         case "last":
@@ -224,29 +234,29 @@ def _failure(check: OfRuns) -> float:
     return np.nan
 
 
-def told_apart(check: OfRuns) -> list[str]:
-    """Return the columns that identify a unit of a comparison; the number of the unit is last."""
+def list_unit_columns(check: OfRuns) -> list[str]:
+    """List the columns that identify a unit of a comparison; the number of the unit is last."""
     return [*check.every, *check.pool, *filter(None, [check.cells]), check.replicate]
 
 
-def mixed(check: OfRuns, runs: pd.DataFrame) -> str:
-    """Return what a unit of a comparison mixes several values of: experiment, condition or method;
-    empty if nothing.
+def find_mixed_factor(check: OfRuns, runs: pd.DataFrame) -> str:
+    """Find a factor (experiment, condition or method) of which a unit of a comparison mixes several
+    values; empty if there is none.
     """
-    keys = told_apart(check)
+    keys = list_unit_columns(check)
     factors = [factor for factor in _FACTORS if factor not in keys]
     distinct = runs[[*keys, *factors]].drop_duplicates()
     several = distinct[distinct.duplicated(keys, keep=False)]
     return next((factor for factor in factors if several[factor].nunique() > 1), "")
 
 
-def _known(value: Any) -> Any:
-    """A value of a place; text where there is none, for that equals itself."""
+def _replace_nan(value: Any) -> Any:
+    """Replace NaN in a place by the text `nan`, which equals itself."""
     return "nan" if value != value else value
 
 
 def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
-    """The rows of each combination of values of the columns, with its name, sorted."""
+    """Yield the rows of each combination of values of the columns, with its name, sorted."""
     if not columns:
         yield "", rows
         return
@@ -254,9 +264,9 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
         yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
 
 
-def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
-    """The mean value of each unit (row) in each cell (column); a run that counts as failed makes
-    its unit fail.
+def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
+    """Average the values of each unit (row) in each cell (column); a run that counts as failed
+    makes its unit fail.
     """
     if column is None:
         return rows.groupby(unit)["value"].mean().to_frame("")
@@ -264,7 +274,7 @@ def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFra
 
 
 def _is_boolean(check: OfRuns, material: Material) -> bool:
-    """Whether the metric is a boolean column that is not averaged over the runs of a unit."""
+    """Return whether the metric is a boolean column, not averaged over the runs of a unit."""
     runs = material.results[check.experiments[0]].runs
     return (
         check.replicate == "repeat"
@@ -273,16 +283,16 @@ def _is_boolean(check: OfRuns, material: Material) -> bool:
     )
 
 
-def _shares_draws(check: OfRuns, material: Material) -> bool:
-    """Whether units with the same number share a random workspace or a start."""
+def _has_shared_draws(check: OfRuns, material: Material) -> bool:
+    """Return whether units with the same number share a random workspace or a start."""
     return "replicate" in check.model_fields_set or all(
         material.study.paired.get(name, False) for name in check.experiments
     )
 
 
-def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
-    """A note where two groups are compared on their successful runs but differ in success rate
-    (Fisher's exact test).
+def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
+    """Return a note if two groups are compared on their successful runs but differ in success rate
+    (Fisher's exact test); otherwise an empty text.
     """
     if (
         len(cells) != 2
@@ -303,8 +313,8 @@ def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) ->
     )
 
 
-def _published_tables(check: OfRuns, claim: Claim, material: Material) -> list[PrintedTable]:
-    """The published numbers of each table of the check's experiments, the claim's artefacts
+def _list_published_tables(check: OfRuns, claim: Claim, material: Material) -> list[PrintedTable]:
+    """List the published numbers of each table of the check's experiments, the claim's artefacts
     first.
     """
     tables: list[PrintedTable] = []
@@ -312,8 +322,8 @@ def _published_tables(check: OfRuns, claim: Claim, material: Material) -> list[P
         for part in material.study.artefacts.get(name, []):
             if part.published and part.experiment in check.experiments:
                 published = material.published[PurePath(part.published).stem]
-                numbers = comparison.as_read(published, part.reads)
+                numbers = comparison.assign_metrics(published, part.reads)
                 tables.append(
-                    printed_table(len(tables), part.experiment, numbers, check.printed_metric)
+                    select_metric(len(tables), part.experiment, numbers, check.printed_metric)
                 )
     return tables

@@ -18,7 +18,7 @@ import numpy as np
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims.check import OfRuns, PublishedMargin
-from bezierplan.analysis.claims.kinds import kind_of
+from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
 from bezierplan.workspaces.seeds import generator
 
@@ -40,9 +40,11 @@ _EVENTS: dict[str, Callable] = {
 
 
 class Terms(NamedTuple):
-    """What a comparison compares: a group in relation to another. Of a share the event, and the
-    share that is needed; of a trend the column along which, and the claimed side; of a function its
-    name. Empty where there is nothing.
+    """The words of a comparison: a group, a relation, and another group; empty where there is
+    nothing.
+
+    For a share they are the event and the required share; for a trend, the column and the claimed
+    direction; for a function, its name.
     """
 
     group: Any = ""
@@ -51,13 +53,15 @@ class Terms(NamedTuple):
 
     @property
     def name(self) -> str:
-        """By which random draws are seeded."""
+        """Return the name by which random draws are seeded."""
         return " ".join(str(part) for part in self if part != "")
 
 
 class Contrast(NamedTuple):
-    """terms: what is compared. place: the values of `every` there, by column. cells: groups, or
-    values of x in rising order (k).
+    """The values of the cells of one comparison.
+
+    terms: the words of the comparison. place: the values of `every` there, by column. cells:
+    groups, or values of x in rising order (k).
 
     strata: one table (units, k) for each condition that is averaged over (mostly one), by name; NaN
     where a unit has no value, infinite where it counts as worse than any other. For a share, the
@@ -80,13 +84,13 @@ class Contrast(NamedTuple):
 
     @property
     def seed(self) -> str:
-        """The name of its place, by which random draws are seeded."""
+        """Return the name of its place, by which random draws are seeded."""
         return ", ".join(f"{column}={value}" for column, value in self.place)
 
     @property
     def counted(self) -> str:
-        """How many units of each cell, out of how many, have a value that can be averaged; fewer if
-        runs failed.
+        """Return how many units of each cell, out of how many, have a value that can be averaged;
+        fewer if runs failed.
         """
         found = np.sum(
             [np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0
@@ -99,9 +103,10 @@ class Finding(NamedTuple):
     """The result of a test; NaN for quantities that do not exist.
 
     toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other
-    way, otherwise 0. negligible: whether the interval of the effect lies within the margin.
-    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`). chance_known: whether
-    our runs are enough to tell how often experiments of the paper's size agree with the claim.
+    way, otherwise 0. negligible: whether the interval of the effect lies within the margin. mark:
+    `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.choose_mark`). chance_known:
+    whether our runs are enough to tell how often experiments of the paper's size agree with the
+    claim.
     """
 
     effect: float = math.nan
@@ -139,12 +144,12 @@ class MarkedComparison(NamedTuple):
 
     @property
     def place(self) -> tuple[tuple[str, Any], ...]:
-        """That of the comparison."""
+        """Return the place of the comparison; empty if no runs are compared."""
         return self.comparison.place if self.comparison else ()
 
     @property
     def counted(self) -> str:
-        """How many units of each cell count (`Contrast.counted`)."""
+        """Return how many units of each cell count (`Contrast.counted`)."""
         return self.comparison.counted if self.comparison else ""
 
 
@@ -152,9 +157,9 @@ class MarkedComparison(NamedTuple):
 # ours, printed ones and draws.
 
 
-def event(check: OfRuns, values: np.ndarray) -> np.ndarray:
-    """Whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the values
-    are already boolean.
+def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
+    """Return whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the
+    values are already boolean.
     """
     if check.limit is None:
         return values
@@ -180,44 +185,50 @@ class Effect(NamedTuple):
     statistic: str = "mean"
 
 
-def _group_less_other(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
+def _compute_difference(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """Compute the first cell's value less the second's; if relative, as a share of the second's."""
     group, other = points[..., 0], points[..., 1]
     return group / other - 1 if check.relative else group - other
 
 
-def _gradient_of_groups(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+def _compute_gradient(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    """Compute how the difference of two cells changes with each value (2,); None if relative to
+    zero.
+    """
     if not check.relative:
         return np.array([1.0, -1.0])
     return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None
 
 
-def on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Whether the effect points as claimed and exceeds the claimed least effect, if any."""
+def is_on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Return whether the effect points as claimed and exceeds the claimed least effect, if any."""
     return SIDES[check.direction] * effects > check.least
 
 
 # Two cells: a group and the one that it is compared with.
-BETWEEN_GROUPS = Effect(_group_less_other, _gradient_of_groups, on_claimed_side)
+BETWEEN_GROUPS = Effect(_compute_difference, _compute_gradient, is_on_claimed_side)
 
 
-def effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The effect (...) of point values (..., k) of the cells."""
+def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """Compute the effect (...) of point values (..., k) of the cells."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return kind_of(check).EFFECT.of(check, points, cells)
+        return load_kind(check).EFFECT.of(check, points, cells)
 
 
-def of_ours(check: OfRuns, comparison: Contrast) -> float:
-    """The effect of the statistic of our values."""
-    return float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
+def compute_our_effect(check: OfRuns, comparison: Contrast) -> float:
+    """Compute the effect of the statistic of our values."""
+    return float(
+        compute_effect(check, compute_points(comparison, choose_statistic(check)), comparison.cells)
+    )
 
 
-def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Whether an effect is what the claim says, by its value alone."""
-    return kind_of(check).EFFECT.holds(check, effects, margin)
+def is_as_claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Return whether an effect is as the claim says, by its value alone."""
+    return load_kind(check).EFFECT.holds(check, effects, margin)
 
 
-def margin_of(check: OfRuns, comparison: Contrast) -> float:
-    """The smallest effect that matters: given as a number or as a share.
+def compute_margin(check: OfRuns, comparison: Contrast) -> float:
+    """Compute the smallest effect that matters, which is given as a number or as a share.
 
     `{published: share}`: a share of the other group's value (of the value at the lowest x; for
     booleans the share itself), or the printed difference of the same cells if that is smaller and
@@ -229,50 +240,59 @@ def margin_of(check: OfRuns, comparison: Contrast) -> float:
     published_margin = margin.published
     if not check.relative and not comparison.boolean:
         published_margin *= abs(
-            float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference])
+            float(
+                compute_points(comparison, choose_statistic(check))[
+                    load_kind(check).EFFECT.reference
+                ]
+            )
         )
-    printed = effect(check, comparison.printed, comparison.cells)
+    printed = compute_effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.direction, np.sign(printed)) > 0
     return min(published_margin, float(abs(printed))) if as_claimed else published_margin
 
 
-def point_statistic(check: OfRuns) -> str:
-    """The statistic that represents a cell by one number."""
+def choose_statistic(check: OfRuns) -> str:
+    """Return the statistic that represents a cell by one number."""
     named = check.statistic
-    return kind_of(check).EFFECT.statistic if named in (None, "rank") else named
+    return load_kind(check).EFFECT.statistic if named in (None, "rank") else named
 
 
 # Values of units, statistics of cells, and their bootstrap.
 
 
-def counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """The values of each cell of a condition (units, k); if paired, only of units with a value in
-    every cell.
+def select_counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
+    """Select the values of each cell of a condition (units, k); if paired, only of units with a
+    value in every cell.
     """
     if paired:
         return list(stratum[~np.isnan(stratum).any(axis=1)].T)
     return [values[~np.isnan(values)] for values in stratum.T]
 
 
-def finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """The values that can be averaged."""
-    return counted(np.where(np.isinf(stratum), np.nan, stratum), paired)
+def select_finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
+    """Select the values of each cell that can be averaged, like `select_counted` without infinite
+    ones.
+    """
+    return select_counted(np.where(np.isinf(stratum), np.nan, stratum), paired)
 
 
-def points(comparison: Contrast, statistic: str) -> np.ndarray:
-    """A named statistic of each cell (k,), averaged over the conditions."""
-    each = [
-        [statistics.statistic(statistic, values) for values in finite(stratum, comparison.paired)]
+def compute_points(comparison: Contrast, statistic: str) -> np.ndarray:
+    """Compute a named statistic of each cell (k,), averaged over the conditions."""
+    points = [
+        [
+            statistics.compute_statistic(statistic, values)
+            for values in select_finite(stratum, comparison.paired)
+        ]
         for stratum in comparison.strata.values()
     ]
-    return np.mean(each, axis=0)
+    return np.mean(points, axis=0)
 
 
-def drawn_points(
+def draw_points(
     comparison: Contrast, statistic: str, name: str, size: int | None = None
 ) -> np.ndarray:
-    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the
-    conditions; NaN for an empty cell.
+    """Draw from the units of each cell and return a named statistic of the draws (DRAWS, k),
+    averaged over the conditions; NaN for an empty cell.
 
     name: seeds the draws. Cells of the same name in comparisons at the same place share their
     draws; paired cells are drawn unit by unit. size: units in a draw, with the same share of
@@ -280,7 +300,7 @@ def drawn_points(
     """
     total = np.zeros((statistics.DRAWS, len(comparison.cells)))
     for stratum_name, stratum in comparison.strata.items():
-        for number, values in enumerate(finite(stratum, comparison.paired)):
+        for number, values in enumerate(select_finite(stratum, comparison.paired)):
             if not len(values):
                 total[:, number] = np.nan
                 continue
@@ -289,15 +309,15 @@ def drawn_points(
             )
             own = "" if comparison.paired else f"/{comparison.cells[number]}"
             rng = generator(f"{name}/{comparison.seed}/{stratum_name}{own}")
-            total[:, number] += statistics.resampled(statistic, values, drawn, rng)
+            total[:, number] += statistics.resample(statistic, values, drawn, rng)
     return total / len(comparison.strata)
 
 
-def drawn_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
-    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal
+def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
+    """Draw the effect of the check's statistic by bootstrap (DRAWS,), or return the normal
     approximation; NaN with an empty cell.
     """
-    statistic = point_statistic(check)
+    statistic = choose_statistic(check)
     if (
         comparison.boolean
         and statistic == "mean"
@@ -305,37 +325,40 @@ def drawn_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
         and len(comparison.cells) == 2
     ):
         adjusted = [
-            _adjusted_difference(*counted(stratum, comparison.paired), comparison.paired)
+            _compute_adjusted_difference(
+                *select_counted(stratum, comparison.paired), comparison.paired
+            )
             for stratum in comparison.strata.values()
         ]
         centre, variance = np.mean(adjusted, axis=0)
-        return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
-    ours = points(comparison, statistic)
-    gradient = kind_of(check).EFFECT.gradient(check, ours, comparison.cells)
+        return statistics.compute_normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
+    ours = compute_points(comparison, statistic)
+    gradient = load_kind(check).EFFECT.gradient(check, ours, comparison.cells)
     if gradient is None or any(
         len(v) <= MOST_RESAMPLED
         for s in comparison.strata.values()
-        for v in finite(s, comparison.paired)
+        for v in select_finite(s, comparison.paired)
     ):
-        return effect(check, drawn_points(comparison, statistic, name), comparison.cells)
+        return compute_effect(check, draw_points(comparison, statistic, name), comparison.cells)
     variance = 0.0
     for stratum in comparison.strata.values():
         moved = [
-            g * statistics.influence(statistic, values)
-            for g, values in zip(gradient, finite(stratum, comparison.paired))
+            g * statistics.compute_influence(statistic, values)
+            for g, values in zip(gradient, select_finite(stratum, comparison.paired))
         ]
         parts = [np.sum(moved, axis=0)] if comparison.paired else moved
         variance += sum(part.var(ddof=1) / len(part) for part in parts)
-    return statistics.normal_draws(
-        float(effect(check, ours, comparison.cells)), math.sqrt(variance) / len(comparison.strata)
+    return statistics.compute_normal_draws(
+        float(compute_effect(check, ours, comparison.cells)),
+        math.sqrt(variance) / len(comparison.strata),
     )
 
 
-def _adjusted_difference(
+def _compute_adjusted_difference(
     group: np.ndarray, reference: np.ndarray, paired: bool
 ) -> tuple[float, float]:
-    """Difference of the shares of two boolean groups, and its variance, with two units added to
-    each; NaN for an empty group.
+    """Compute the difference of the shares of two boolean groups, and its variance, with two units
+    added to each; NaN for an empty group.
     """
     if not len(group) or not len(reference):
         return math.nan, math.nan
@@ -349,43 +372,44 @@ def _adjusted_difference(
     )
 
 
-def by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
-    """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn
-    from our runs.
+def judge_by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
+    """Judge a sentence about extremes by how often it holds in experiments of the paper's size,
+    drawn from our runs.
     """
-    statistic = point_statistic(check)
-    ours = of_ours(check, comparison)
-    margin, n = margin_of(check, comparison), units(comparison)
+    statistic = choose_statistic(check)
+    ours = compute_our_effect(check, comparison)
+    margin, n = compute_margin(check, comparison), count_units(comparison)
     finding = Finding(
         effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
     )
     if comparison.paper_units is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
-    effects = effect(
-        check, drawn_points(comparison, statistic, name, comparison.paper_units), comparison.cells
+    effects = compute_effect(
+        check, draw_points(comparison, statistic, name, comparison.paper_units), comparison.cells
     )
-    held = np.mean(claimed(check, effects, margin))
+    held = np.mean(is_as_claimed(check, effects, margin))
     return finding._replace(
-        mark=by_share(held),
+        mark=mark_share(held),
         chance_known=n >= ENOUGH * comparison.paper_units,
         reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
         "drawn from ours",
     )
 
 
-def by_share(share: float) -> str:
-    """The mark of a sentence that holds in a share of draws."""
+def mark_share(share: float) -> str:
+    """Return the mark of a sentence that holds in a share of draws."""
     return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
 
 
-def two_sided(draws: np.ndarray) -> float:
-    """Two-sided bootstrap p of an effect, from its draws."""
+def compute_p(draws: np.ndarray) -> float:
+    """Compute the two-sided bootstrap p of an effect from its draws."""
     if not np.isfinite(draws).all():
         return math.nan
     return float(min(1.0, 2 * min(np.mean(draws <= 0), np.mean(draws >= 0))))
 
 
-def interval(draws: np.ndarray) -> tuple[float, float]:
+def compute_interval_of_draws(draws: np.ndarray) -> tuple[float, float]:
+    """Compute the central 95 % interval of draws; NaN if any is not finite."""
     if not np.isfinite(draws).all():
         return math.nan, math.nan
     low, high = np.quantile(draws, [TAIL, 1 - TAIL])
@@ -393,8 +417,8 @@ def interval(draws: np.ndarray) -> tuple[float, float]:
 
 
 def is_negligible(low: float, high: float, margin: float, n: int, least: float = 0.0) -> bool:
-    """Whether the interval of an effect, less the claimed one, lies within the margin. Identical
-    units must be enough to say so.
+    """Return whether the interval of an effect, less the claimed one, lies within the margin.
+    Identical units must be enough to say so.
     """
     return bool(
         max(abs(low - least), abs(high - least)) <= margin
@@ -402,8 +426,8 @@ def is_negligible(low: float, high: float, margin: float, n: int, least: float =
     )
 
 
-def no_difference(low: float, high: float, n: int) -> str:
-    """Why identical units say nothing; empty if they differ or are enough."""
+def explain_no_difference(low: float, high: float, n: int) -> str:
+    """Explain why identical units say nothing; empty if they differ or are enough."""
     return (
         f"no difference in fewer than {LEAST_WITHOUT_EXAMPLE} units"
         if low == high == 0 and n < LEAST_WITHOUT_EXAMPLE
@@ -411,28 +435,28 @@ def no_difference(low: float, high: float, n: int) -> str:
     )
 
 
-def units(comparison: Contrast) -> int:
-    """Units of the smallest cell, over all conditions."""
+def count_units(comparison: Contrast) -> int:
+    """Count the units of the smallest cell, over all conditions."""
     sizes = [
-        [len(values) for values in counted(stratum, comparison.paired)]
+        [len(values) for values in select_counted(stratum, comparison.paired)]
         for stratum in comparison.strata.values()
     ]
     return min(map(sum, zip(*sizes)))
 
 
-def too_few(comparison: Contrast) -> str:
-    """Why a comparison says nothing; empty if it may say something."""
+def explain_too_few(comparison: Contrast) -> str:
+    """Explain why a comparison says nothing; empty if it may say something."""
     for stratum in comparison.strata.values():
         for cell, values in zip(comparison.cells, stratum.T):
             if np.isnan(values).all():
                 return f"no run of {cell} counts"
         if np.isinf(stratum[~np.isnan(stratum)]).all():
             return "no run succeeded"
-        if min(map(len, counted(stratum, comparison.paired))) < LEAST_RUNS:
+        if min(map(len, select_counted(stratum, comparison.paired))) < LEAST_RUNS:
             return f"fewer than {LEAST_RUNS} units"
     return ""
 
 
-def why_none(number: float) -> str:
-    """Why there is no such p or effect; empty if there is one."""
+def explain_missing(number: float) -> str:
+    """Explain why there is no such p or effect; empty if there is one."""
     return "" if math.isfinite(number) else "relative to a value that is zero or does not exist"

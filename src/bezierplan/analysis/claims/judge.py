@@ -51,20 +51,25 @@ from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Finding, MarkedComparison, Terms
-from bezierplan.analysis.claims.kinds import kind_of
+from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.analysis.claims.variants import in_variant, name_of, variants, with_work
+from bezierplan.analysis.claims.variants import (
+    apply_variant,
+    list_variants,
+    name_variant,
+    split_work,
+)
 
 
-def judge(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
+def judge_claims(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Judge the claims of a study; return tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
 
     All random draws are seeded by names, and nothing depends on the order of the runs. Raises Fault
     for a claim that mixes runs of several conditions or names an unknown function.
     """
     claim_rows, check_rows = [], []
     for claim in material.study.claims:
-        first, *_ = assignments = variants(claim)
+        first, *_ = assignments = list_variants(claim)
         for assignment in assignments:
             row, details = _judge_variant(claim, first, assignment, material)
             claim_rows.append(row | {"primary": assignment is first})
@@ -80,15 +85,17 @@ def judge(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
 def _judge_variant(
     claim: Claim, first: dict, assignment: dict, material: Material
 ) -> tuple[dict, list[dict]]:
-    """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
+    """Judge one variant of a claim; return its row of claims.csv and its rows of
+    claim_checks.csv.
+    """
     # `rest` means the same as in the primary variant, so it is filled in before values are
     # substituted.
-    checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
-    checks = in_variant(checks, first, assignment)
-    key = {"study": material.study.name, "id": claim.id, "variant": name_of(assignment)}
-    judgements, obstacle = _judgements(checks, claim, "/".join(key.values()), material)
+    checks = [comparisons.fill_rest(check, claim, material) for check in claim.checks]
+    checks = apply_variant(checks, first, assignment)
+    key = {"study": material.study.name, "id": claim.id, "variant": name_variant(assignment)}
+    judgements, obstacle = _judge_checks(checks, claim, "/".join(key.values()), material)
     deciding = [entry for entry in judgements if entry.primary]
-    decisive = None if obstacle else _shown(deciding, claim.holds)
+    decisive = None if obstacle else _select_decisive(deciding, claim.holds)
     row = key | {
         "place": claim.place,
         "statement": claim.statement,
@@ -96,28 +103,33 @@ def _judge_variant(
         "finding": bool(claim.finding),
         "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
-        "timed": any(with_work(check)[0].timed for check in checks if check.primary),
-        "published": _published(deciding),
+        "timed": any(split_work(check)[0].timed for check in checks if check.primary),
+        "published": _count_published(deciding),
     }
     if decisive:
-        row |= _summary(claim, judgements, deciding, decisive, material)
+        row |= _describe_verdict(claim, judgements, deciding, decisive, material)
     else:
         row |= {"verdict": "untestable", "reason": obstacle}
     return row, [
-        _check_row(entry, material) | key | {"decisive": entry is decisive} for entry in judgements
+        _build_check_row(entry, material) | key | {"decisive": entry is decisive}
+        for entry in judgements
     ]
 
 
-def _summary(
+def _describe_verdict(
     claim: Claim,
     judgements: list[MarkedComparison],
     deciding: list[MarkedComparison],
     decisive: MarkedComparison,
     material: Material,
 ) -> dict:
-    """What follows from the comparisons of a claim, some of which decide."""
+    """Reach the verdict on a claim from its comparisons; return the fields of its row that follow
+    from it.
+
+    deciding: the primary comparisons. decisive: the one whose effect is shown.
+    """
     finding, holds = decisive.finding, claim.holds
-    verdict = verdicts.verdict(
+    verdict = verdicts.judge_marks(
         [entry.mark for entry in deciding], [entry.mark_family for entry in deciding], holds
     )
     if verdict == "undecided" and all(
@@ -126,10 +138,10 @@ def _summary(
         verdict = "depends"
     everywhere = verdict == "supported" and holds != "any"
     reasons = [
-        sentences.by_own_criterion(claim, verdict),
-        sentences.less_than(deciding, verdict, _unit(deciding[0].check, material)),
-        _reason(decisive),
-        sentences.disagreement(judgements),
+        sentences.note_own_criterion(claim, verdict),
+        sentences.note_negligible(deciding, verdict, _find_unit(deciding[0].check, material)),
+        _write_reason(decisive),
+        sentences.note_disagreement(judgements),
         claim.note or "",
     ]
     return finding._asdict() | {
@@ -137,22 +149,24 @@ def _summary(
         "holds": f"{sum(entry.mark == '+' for entry in deciding)} of {len(deciding)}",
         "where_it_holds": ""
         if everywhere
-        else sentences.where_it_holds(judgements, material.study.labels),
+        else sentences.describe_where_it_holds(judgements, material.study.labels),
         "counted": decisive.counted,
         "p_family": decisive.p_family,
         "reason": "; ".join(filter(None, reasons)),
     }
 
 
-def _judgements(
+def _judge_checks(
     checks: list[ClaimCheck], claim: Claim, name: str, material: Material
 ) -> tuple[list[MarkedComparison], str]:
-    """The comparisons of a claim with their marks, and why it cannot be tested; empty if it can."""
+    """Judge all checks of a claim; return their comparisons with marks, and why the claim cannot be
+    tested (empty if it can).
+    """
     judgements, obstacle = [], ""
     for number, written in enumerate(checks, start=1):
-        for check in with_work(written):
+        for check in split_work(written):
             try:
-                judgements += _findings(number, check, claim, name, material)
+                judgements += _judge_check(number, check, claim, name, material)
             except Untestable as reason:
                 if check.primary:
                     obstacle = obstacle or str(reason)
@@ -161,14 +175,14 @@ def _judgements(
                     judgements.append(
                         MarkedComparison(number, check, False, Terms(), None, nothing)
                     )
-    return _marked(judgements), obstacle
+    return _mark_comparisons(judgements), obstacle
 
 
-def _findings(
+def _judge_check(
     number: int, check: ClaimCheck, claim: Claim, name: str, material: Material
 ) -> list[MarkedComparison]:
-    """The comparisons of one check with their findings. Raises Untestable."""
-    kind = kind_of(check)
+    """Judge the comparisons of one check; return them with their findings. Raises Untestable."""
+    kind = load_kind(check)
     if not isinstance(check, OfRuns):
         judged = [
             (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
@@ -178,60 +192,62 @@ def _findings(
     else:
         judged = [
             (each.terms, each, kind.find(check, each, f"{name}/{number}/{each.terms.name}"))
-            for each in comparisons.comparisons(check, claim, material)
+            for each in comparisons.build_comparisons(check, claim, material)
         ]
     entries = [
         MarkedComparison(number, check, check.primary, terms, compared, finding)
         for terms, compared, finding in judged
     ]
-    return _together(entries) if check.together else entries
+    return _combine_places(entries) if check.together else entries
 
 
-def _together(findings: list[MarkedComparison]) -> list[MarkedComparison]:
-    """The comparisons of each place as one, followed by themselves as secondary ones."""
+def _combine_places(findings: list[MarkedComparison]) -> list[MarkedComparison]:
+    """Combine the comparisons of each place into one, followed by themselves as secondary ones."""
     places = dict.fromkeys(each.place for each in findings)
     judged = []
     for own in ([each for each in findings if each.place == place] for place in places):
-        finding, decisive = verdicts.conjunction([each.finding for each in own])
+        finding, decisive = verdicts.combine_findings([each.finding for each in own])
         parts = tuple(each.comparison for each in own)
         whole = own[decisive]._replace(finding=finding, parts=parts)
         judged += [whole, *(each._replace(primary=False) for each in own)]
     return judged
 
 
-def _marked(findings: list[MarkedComparison]) -> list[MarkedComparison]:
-    """The comparisons with their marks, the primary ones also with their marks in the family."""
+def _mark_comparisons(findings: list[MarkedComparison]) -> list[MarkedComparison]:
+    """Mark each comparison by its own p, the primary ones also by their p in the family."""
     p = np.array([entry.finding.p if entry.primary else math.nan for entry in findings])
     in_family = np.full(len(p), math.nan)
-    in_family[~np.isnan(p)] = verdicts.family(p[~np.isnan(p)])
+    in_family[~np.isnan(p)] = verdicts.compute_family_p(p[~np.isnan(p)])
     return [
         entry._replace(
-            mark=verdicts.mark(entry.finding, entry.finding.p),
-            mark_family=verdicts.mark(entry.finding, p_family) if entry.primary else "",
+            mark=verdicts.choose_mark(entry.finding, entry.finding.p),
+            mark_family=verdicts.choose_mark(entry.finding, p_family) if entry.primary else "",
             p_family=p_family,
         )
         for entry, p_family in zip(findings, in_family.tolist())
     ]
 
 
-def _shown(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
-    """The decisive comparison.
+def _select_decisive(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
+    """Select the decisive comparison.
 
-    If all have to hold, the worst - by effect (of the first check that has one), otherwise that
-    with the largest p, preceded by any without p that is not +. If any may hold, that with the
-    smallest p, among those with a + if there are any.
+    If all have to hold, it is the worst - by effect (of the first check that has one), otherwise
+    the one with the largest p, preceded by any without p that is not +. If any may hold, it is the
+    one with the smallest p, among those with a + if there are any.
     """
 
-    def p(entry: MarkedComparison) -> float:
+    def find_p(entry: MarkedComparison) -> float:
         if math.isnan(entry.finding.p):
             return -1.0 if entry.mark == "+" else 2.0
         return entry.finding.p
 
     if holds == "any":
-        return min([entry for entry in deciding if entry.mark_family == "+"] or deciding, key=p)
+        return min(
+            [entry for entry in deciding if entry.mark_family == "+"] or deciding, key=find_p
+        )
     against = [entry for entry in deciding if entry.mark_family == "-"]
     if not against:
-        return max(deciding, key=p)
+        return max(deciding, key=find_p)
     first = [entry for entry in against if entry.number == against[0].number]
     return max(
         first,
@@ -242,41 +258,44 @@ def _shown(deciding: list[MarkedComparison], holds: str) -> MarkedComparison:
 # The printed numbers, and experiments of the paper's size.
 
 
-def _printed(entry: MarkedComparison) -> tuple[float, bool | None]:
-    """The effect in the printed numbers, and whether the sentence holds in them; None if they are
-    not printed.
+def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
+    """Compute the effect in the printed numbers, and judge whether the sentence holds in them; None
+    if they are not printed.
     """
     parts = entry.parts or (entry.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    printed = [effects.effect(entry.check, part.printed, part.cells) for part in parts]
+    printed = [effects.compute_effect(entry.check, part.printed, part.cells) for part in parts]
     held = all(
-        bool(effects.claimed(entry.check, effect, entry.finding.margin)) for effect in printed
+        bool(effects.is_as_claimed(entry.check, effect, entry.finding.margin)) for effect in printed
     )
     return float(
-        effects.effect(entry.check, entry.comparison.printed, entry.comparison.cells)
+        effects.compute_effect(entry.check, entry.comparison.printed, entry.comparison.cells)
     ), held
 
 
-def _published(deciding: list[MarkedComparison]) -> str:
-    held = [held for _, held in map(_printed, deciding) if held is not None]
+def _count_published(deciding: list[MarkedComparison]) -> str:
+    """Count in how many of the printed comparisons the sentence holds, in words."""
+    held = [held for _, held in map(_judge_printed, deciding) if held is not None]
     return f"{sum(held)} of {len(held)}" if held else "not printed"
 
 
 # Rows.
 
 
-def _reason(each: MarkedComparison) -> str:
-    """Notes for the reader of a row."""
+def _write_reason(each: MarkedComparison) -> str:
+    """Write the notes for the reader of a row: the reason for the mark, and the note on the
+    comparison.
+    """
     unexplained = "too few units to tell" if each.mark == "?" else ""
     note = each.comparison.note if each.comparison else ""
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
 
 
-def _check_row(entry: MarkedComparison, material: Material) -> dict:
-    """A row of claim_checks.csv, whose columns leave out the rest of what is known."""
+def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
+    """Build a row of claim_checks.csv, whose columns leave out the rest of what is known."""
     check, finding = entry.check, entry.finding
-    effect_published, agrees = _printed(entry)
+    effect_published, agrees = _judge_printed(entry)
     return (
         finding._asdict()
         | entry._asdict()
@@ -287,7 +306,7 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
             "experiments": ", ".join(check.experiments),
             "metric": check.metric,
             "statistic": check.statistic_shown,
-            "unit": _unit(check, material),
+            "unit": _find_unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,
             "place": json.dumps(dict(entry.place), default=np.generic.item),
@@ -296,16 +315,18 @@ def _check_row(entry: MarkedComparison, material: Material) -> dict:
             "effect_published": effect_published,
             "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
             "timed": check.timed,
-            "reason": _reason(entry),
+            "reason": _write_reason(entry),
         }
     )
 
 
-def _unit(check: ClaimCheck, material: Material) -> str:
-    """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
+def _find_unit(check: ClaimCheck, material: Material) -> str:
+    """Find the unit of a check's metric, or of the effect of a function; empty if neither
+    is known.
+    """
     if check.effect_unit:
         return check.effect_unit
     known = [material.results[name] for name in check.experiments if name in material.results]
     # All problems share one unit of length.
     problem = next((problem for each in known for problem in each.problems.values()), None)
-    return metrics.unit(check.metric, problem.workspace.unit) if problem else ""
+    return metrics.find_unit(check.metric, problem.workspace.unit) if problem else ""

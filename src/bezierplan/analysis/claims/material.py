@@ -61,4 +61,4 @@ class Material(NamedTuple):
 
 
 class Untestable(Exception):
-    """Why a check cannot be judged."""
+    """Raised for a check that cannot be judged, with the reason."""

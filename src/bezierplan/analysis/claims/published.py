@@ -9,7 +9,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import OfRuns
-from bezierplan.analysis.results import keys_of
+from bezierplan.analysis.results import list_keys
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -19,13 +19,13 @@ PrintedCell = dict[str, tuple[tuple[int, int], float, float]]
 """Printed numbers of one cell: statistic -> (its table and row, value, number of runs)."""
 
 
-def printed(
+def average_printed(
     check: OfRuns, rows_of_conditions: Sequence[Sequence[PrintedCell | None]]
 ) -> tuple[np.ndarray, int | None]:
-    """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if
-    that is not printed.
+    """Average the printed numbers of cells over conditions; return them (k,) and their number of
+    runs, None if that is not printed.
 
-    rows_of_conditions: of each condition, of each cell, its numbers as from `rows_of_cell`.
+    rows_of_conditions: for each condition and each cell, its numbers as from `find_cell`.
 
     All use one statistic: the check's own or an unstated one, for a median of seconds also another;
     if it names none, the first of `_ANY_STATISTIC` that is printed for every cell. NaN where a cell
@@ -35,17 +35,19 @@ def printed(
     cells = [cell for cell in itertools.chain(*rows_of_conditions) if cell]
     rows = [row for cell in cells for row, _, _ in cell.values()]
     if len(cells) == size * len(rows_of_conditions) and len({*rows}) == len(rows):
-        for statistic in _wanted(check):
+        for statistic in _list_statistics(check):
             if all(statistic in cell for cell in cells):
                 values, runs = np.array([cell[statistic][1:] for cell in cells]).T
                 numbers = values / runs if statistic == "count" else values
                 known = None if np.isnan(runs).all() else int(np.nanmin(runs))
-                return effects.event(check, numbers.reshape(-1, size).mean(axis=0)), known
+                return effects.mark_events(check, numbers.reshape(-1, size).mean(axis=0)), known
     return np.full(size, np.nan), None
 
 
-def _wanted(check: OfRuns) -> tuple[str, ...]:
-    """The printed statistics that serve a check, the best first. Papers print mean times; other
+def _list_statistics(check: OfRuns) -> tuple[str, ...]:
+    """List the printed statistics that serve a check, the best first.
+
+    Medians of seconds are compared with printed means as well: papers print mean times; other
     programs disturb medians less.
     """
     named = check.statistic
@@ -64,11 +66,11 @@ class PrintedTable(NamedTuple):
     cells: dict[tuple, PrintedCell]
 
 
-def printed_table(
+def select_metric(
     table_number: int, experiment: str, table: pd.DataFrame, metric: str
 ) -> PrintedTable:
-    """The numbers of a metric in a table of published numbers."""
-    keys = keys_of(table)
+    """Select the numbers of a metric from a table of published numbers."""
+    keys = list_keys(table)
     rows = table[table["metric"] == metric].dropna(subset=keys)
     cells: dict[tuple, PrintedCell] = {}
     for number, row in zip(rows.index, rows.to_dict("records")):
@@ -78,10 +80,11 @@ def printed_table(
     return PrintedTable(experiment, keys, cells)
 
 
-def rows_of_cell(
+def find_cell(
     cell: list[dict], tables: list[PrintedTable], variant_of: dict[str, str]
 ) -> PrintedCell | None:
-    """The printed numbers of a cell; None if no table has it, or if the cell matches several rows.
+    """Find the printed numbers of a cell; None if no table has it, or if the cell matches several
+    rows.
 
     cell: the values that distinguish its runs, by column. tables: the first with the cell is used.
     variant_of: method -> the method whose published numbers count.

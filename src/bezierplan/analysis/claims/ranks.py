@@ -6,8 +6,10 @@ import numpy as np
 MOST_EXACT = 50
 
 
-def rank_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[float, int]:
-    """p of two groups' ranks, and the side (1: higher) on which the first group's lie."""
+def compare_ranks(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[float, int]:
+    """Compare the ranks of two groups; return p, and the side (1: higher) on which the first
+    group's lie.
+    """
     from scipy import stats
 
     if paired:
@@ -15,16 +17,16 @@ def rank_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[f
         if not difference.any():
             return 1.0, 0
         ranks = np.sign(difference) * stats.rankdata(np.abs(difference))
-        return signed_rank_test(difference), int(np.sign(ranks.sum()))
+        return compute_p_of_signed_ranks(difference), int(np.sign(ranks.sum()))
     if np.ptp(np.concatenate([group, reference])) == 0:
         return 1.0, 0
     test = stats.mannwhitneyu(group, reference)
     return float(test.pvalue), int(np.sign(test.statistic - len(group) * len(reference) / 2))
 
 
-def signed_rank_test(difference: np.ndarray) -> float:
-    """p of Wilcoxon's signed-rank test with Pratt's zeros, against a median of zero; exact, even
-    with ties, up to `MOST_EXACT` differences.
+def compute_p_of_signed_ranks(difference: np.ndarray) -> float:
+    """Compute p of Wilcoxon's signed-rank test with Pratt's zeros, against a median of zero; exact,
+    even with ties, up to `MOST_EXACT` differences.
 
     scipy's test is exact with ties only up to 13 differences, and takes a second for that.
     """
@@ -44,8 +46,10 @@ def signed_rank_test(difference: np.ndarray) -> float:
     )
 
 
-def wins(group: np.ndarray, others: np.ndarray) -> float:
-    """Share of all pairs in which the first group's value is higher, ties counted half."""
+def compute_a12(group: np.ndarray, others: np.ndarray) -> float:
+    """Compute A12, the share of all pairs in which the first group's value is higher, ties counted
+    half.
+    """
     from scipy import stats
 
     won = stats.mannwhitneyu(group, others, method="asymptotic").statistic

@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
 from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.analysis.naming import amount, column_name, number
+from bezierplan.analysis.naming import format_amount, format_number, name_column
 from bezierplan.schema.model import convert_to_list, is_number
 
 if TYPE_CHECKING:
@@ -43,27 +43,27 @@ _NEEDS = {
 
 
 class PrintedTerms(NamedTuple):
-    """What a row of claim_checks.csv compares, as printed."""
+    """The groups and the place of a row of claim_checks.csv, as printed."""
 
     group: str
     other: str
     place: str
 
 
-def named(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> PrintedTerms:
-    """The groups and the place of a row, None where it is empty."""
-    place = places(json.loads(row["place"] or "{}"), labels)
+def name_terms(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> PrintedTerms:
+    """Name the groups and the place of a row of claim_checks.csv, None where it is empty."""
+    place = describe_place(json.loads(row["place"] or "{}"), labels)
     if not (check and check.against):
         return PrintedTerms("", "", place)
-    groups = (str(_group(check, row[end])) for end in ("group", "other"))
-    return PrintedTerms(*(column_name(group, labels) for group in groups), place)
+    groups = (str(_name_group(check, row[end])) for end in ("group", "other"))
+    return PrintedTerms(*(name_column(group, labels) for group in groups), place)
 
 
-def title(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
-    """The name of a comparison: what is compared, and where. check: None if it is no more."""
+def name_comparison(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
+    """Name a comparison: the terms, and the place. check: None if the study has it no more."""
     terms = [row[name] for name in ("group", "relation", "other")]
-    words = ["" if term is None else _plain(term) for term in terms]
-    names = named(row, check, labels)
+    words = ["" if term is None else _format_value(term) for term in terms]
+    names = name_terms(row, check, labels)
     if names.group:
         words[0], words[2] = names.group, names.other
     if row["together"]:
@@ -71,60 +71,64 @@ def title(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
     return ", ".join(filter(None, [" ".join(filter(None, words)), names.place]))
 
 
-def variants_named(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[str, str]:
-    """Variants of claims, by their names in claims.csv, as printed."""
+def name_variants(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[str, str]:
+    """Name the variants of claims as printed, by their names in claims.csv."""
     return {
-        variants.name_of(values): places(values, labels)
+        variants.name_variant(values): describe_place(values, labels)
         for claim in claims
-        for values in variants.variants(claim)
+        for values in variants.list_variants(claim)
     }
 
 
-def places(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
-    """Values by column, as printed: a label, or the value after the name of its column."""
+def describe_place(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
+    """Describe values by column as printed: a label, or the value after the name of its column."""
     words = []
     for column, value in values.items():
         if value is True:
-            words.append(column_name(column, labels))
+            words.append(name_column(column, labels))
             continue
         if value is None:  # the default among variants: all rows
-            words.append(f"{column_name(column, labels)} or not")
+            words.append(f"{name_column(column, labels)} or not")
             continue
-        names = [labels.get(str(each), _plain(each)) for each in convert_to_list(value)]
+        names = [labels.get(str(each), _format_value(each)) for each in convert_to_list(value)]
         known = all(str(each) in labels for each in convert_to_list(value))
-        words.append(("" if known else f"{column_name(column, labels)} ") + " and ".join(names))
+        words.append(("" if known else f"{name_column(column, labels)} ") + " and ".join(names))
     return ", ".join(words)
 
 
-def _plain(value: Any) -> str:
-    """A value without a label."""
+def _format_value(value: Any) -> str:
+    """Format a value without a label."""
     return f"{value:g}" if is_number(value) else str(value).replace("_", " ")
 
 
-def why(row: Row, check: ClaimCheck, labels: Mapping[str, str], own_criterion: bool) -> str:
-    """The sentence about a claim's decisive comparison.
+def explain_verdict(
+    row: Row, check: ClaimCheck, labels: Mapping[str, str], own_criterion: bool
+) -> str:
+    """Explain a verdict by a sentence about the claim's decisive comparison.
 
-    row: of claim_checks.csv, None where it is empty. labels: name -> how it is printed.
+    row: from claim_checks.csv, None where it is empty. labels: name -> how it is printed.
     own_criterion: whether the limit is ours because the paper gives no number.
     """
-    template = _TEMPLATES.get(row["test"], _effect)
-    if row["effect"] is None and template is not _function:
-        template = _effect
+    template = _TEMPLATES.get(row["test"], _describe_effect)
+    if row["effect"] is None and template is not _describe_function:
+        template = _describe_effect
     notes = [
         "judged on counted work, because seconds differ from machine to machine"
         if isinstance(check, OfRuns) and check.work
         else "",
         "the paper gives no number, so this limit is ours" if own_criterion else "",
     ]
-    names = named(row, check, labels)
+    names = name_terms(row, check, labels)
     where = f"{names.place}: " if names.place else ""
     text = "; ".join(filter(None, [where + template(row, check, names), *notes]))
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def rule(claim: Claim | None, verdict: str, count: str | None) -> str:
-    """How many comparisons of a claim hold, such as `3 of 16; one suffices`, and how many it needs
-    where that is not plain. count: as in claims.csv. claim: None if the study has it no more.
+def describe_count(claim: Claim | None, verdict: str, count: str | None) -> str:
+    """Describe how many comparisons of a claim hold, such as `3 of 16; one suffices`, and how many
+    it needs where that is not plain.
+
+    count: as in claims.csv. claim: None if the study has it no more.
     """
     held, _, total = (count or "").partition(" of ")
     some = total and 0 < int(held) < int(total)
@@ -136,8 +140,8 @@ def rule(claim: Claim | None, verdict: str, count: str | None) -> str:
     return f"{count}; {needs}" if some and needs else count or ""
 
 
-def reference(check: ClaimCheck) -> float:
-    """The effect on whose other side a claim fails: the share that it needs, 0 for any other
+def find_threshold(check: ClaimCheck) -> float:
+    """Return the effect on whose other side a claim fails: the share that it needs, 0 for any other
     test.
     """
     if not isinstance(check, share.Options):
@@ -147,66 +151,70 @@ def reference(check: ClaimCheck) -> float:
     )
 
 
-def _claimed(row: Row, check: ClaimCheck) -> str:
-    """What a claim that compares groups says, in each of the comparisons taken together."""
+def _describe_claim(row: Row, check: ClaimCheck) -> str:
+    """Say what a claim that compares groups says, in each of the comparisons taken together."""
     together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
     return f"the claim says {check.direction}{together}"
 
 
-def _between(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Of groups that should be lower, or higher, than others."""
+def _describe_lower(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe a comparison of groups that should be lower, or higher, than others."""
     # Of an event, the share of runs in which it happens.
-    quantity = _quantity(row)
+    quantity = _name_quantity(row)
     event = quantity.removeprefix("whether ")
     measured = quantity if event == quantity else f"the share of runs in which {event}"
     return (
-        f"in {measured}, {names.group} is {_apart(row, check)} {names.other}{_interval(row, check)}"
-        f"; {_claimed(row, check)}{_margin(row, check)}"
+        f"in {measured}, {names.group} is {_describe_difference(row, check)} "
+        f"{names.other}{_format_interval(row, check)}"
+        f"; {_describe_claim(row, check)}{_describe_margin(row, check)}"
     )
 
 
-def _apart(row: Row, check: ClaimCheck) -> str:
-    """How a group compares with another: `3 cell lower than`, `25,000 times`."""
+def _describe_difference(row: Row, check: ClaimCheck) -> str:
+    """Describe how a group compares with another: `3 cell lower than`, `25,000 times`."""
     effect = row["effect"]
     if not effect:
         return "equal to"
     if check.relative and effect > _TIMES:
-        return f"{number(1 + effect)} times"
-    return f"{_amount(abs(effect), row, check)} {_side(effect)} than"
+        return f"{format_number(1 + effect)} times"
+    return f"{_format_amount(abs(effect), row, check)} {_name_side(effect)} than"
 
 
-def _side(effect: float) -> str:
+def _name_side(effect: float) -> str:
+    """Name the side of an effect: lower or higher."""
     return "lower" if effect < 0 else "higher"
 
 
-def _equal(row: Row, check: equal_within.Options, names: PrintedTerms) -> str:
-    """Of groups that should be alike, or apart by a stated amount."""
+def _describe_equal(row: Row, check: equal_within.Options, names: PrintedTerms) -> str:
+    """Describe a comparison of groups that should be alike, or apart by a stated amount."""
     target = check.target
     says = (
-        f"by how much: {_amount(abs(target), row, check)} {_side(target)}"
+        f"by how much: {_format_amount(abs(target), row, check)} {_name_side(target)}"
         if target
         else "that they are alike"
     )
     return (
-        f"in {_quantity(row)}, {names.group} is {_apart(row, check)} "
-        f"{names.other}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
+        f"in {_name_quantity(row)}, {names.group} is {_describe_difference(row, check)} "
+        f"{names.other}{_format_interval(row, check)}; the claim says {says}"
+        f"{_describe_margin(row, check)}"
     )
 
 
-def _trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
-    """Of a quantity that should rise or fall along another."""
+def _describe_trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
+    """Describe a quantity that should rise or fall along another."""
     along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
     claimed = {"up": "rises", "down": "falls"}[check.direction]
-    size = _amount(abs(row["effect"]), row, check)
+    size = _format_amount(abs(row["effect"]), row, check)
     return (
-        f"{_quantity(row)} {moves} by {size}{_interval(row, check)} from the "
-        f"least to the largest {along}; the claim says that it {claimed}{_margin(row, check)}"
+        f"{_name_quantity(row)} {moves} by {size}{_format_interval(row, check)} from the "
+        f"least to the largest {along}; the claim says that it {claimed}"
+        f"{_describe_margin(row, check)}"
     )
 
 
-def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
-    """Of a share of runs in which an event happens."""
-    happens = _event(row, check)
+def _describe_share(row: Row, check: share.Options, names: PrintedTerms) -> str:
+    """Describe a share of runs in which an event happens."""
+    happens = _describe_event(row, check)
     if check.pick:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
         return (
@@ -214,7 +222,7 @@ def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
             f"{'this holds' if row['effect'] else 'this does not hold'}"
         )
     needed = _NEEDS.get(check.threshold)
-    needed = needed or f"in {_plain(check.direction)} {100 * check.threshold:g} %"
+    needed = needed or f"in {_format_value(check.direction)} {100 * check.threshold:g} %"
     low, high = row["low95"], row["high95"]
     between = (
         ""
@@ -226,13 +234,13 @@ def _share(row: Row, check: share.Options, names: PrintedTerms) -> str:
     return f"{found}; the claim needs it {needed}"
 
 
-def _event(row: Row, check: share.Options) -> str:
-    """What happens in a run that counts."""
-    meaning = _quantity(row)
+def _describe_event(row: Row, check: share.Options) -> str:
+    """Describe the event of a share: what happens in a run that counts."""
+    meaning = _name_quantity(row)
     if check.limit:
         word, value = check.limit
-        unit = "" if str(row["unit"]) in meaning else _unit(row)
-        return f"{meaning} is {_plain(word)} {value:g}{unit}"
+        unit = "" if str(row["unit"]) in meaning else _format_unit(row)
+        return f"{meaning} is {_format_value(word)} {value:g}{unit}"
     return (
         meaning.removeprefix("whether ")
         if meaning.startswith("whether ")
@@ -240,62 +248,71 @@ def _event(row: Row, check: share.Options) -> str:
     )
 
 
-def _function(row: Row, check: function.Options, names: PrintedTerms) -> str:
-    """Of what a function of the study's own finds."""
+def _describe_function(row: Row, check: function.Options, names: PrintedTerms) -> str:
+    """Describe the finding of a function of the study's own."""
     if row["effect"] is None:
         return f"{check.effect}: no value"
-    return f"{check.effect}: {number(row['effect'])}{_unit(row)}{_interval(row, check)}"
+    return (
+        f"{check.effect}: {format_number(row['effect'])}{_format_unit(row)}"
+        f"{_format_interval(row, check)}"
+    )
 
 
-def _effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Of any other comparison; without an effect, how many runs of each group have a value."""
+def _describe_effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe any other comparison; without an effect, say how many runs of each group have a
+    value.
+    """
     if row["effect"] is not None:
         compared = " ".join(filter(None, [names.group, row["relation"], names.other]))
-        quantity = ", ".join(filter(None, [_quantity(row), compared]))
-        return f"{quantity}: {_amount(row['effect'], row, check)}{_interval(row, check)}"
+        quantity = ", ".join(filter(None, [_name_quantity(row), compared]))
+        return (
+            f"{quantity}: {_format_amount(row['effect'], row, check)}{_format_interval(row, check)}"
+        )
     counts = (row["counted"] or "").split(", ")
     groups = [f" of {group}" for group in (names.group, names.other) if group] or [""]
     if not row["counted"] or len(counts) != len(groups):
-        return f"{_quantity(row)} has no value"
+        return f"{_name_quantity(row)} has no value"
     have = " and ".join(f"in {count} runs{group}" for count, group in zip(counts, groups))
-    claimed = f"; {_claimed(row, check)}" if check.against and check.direction else ""
-    return f"without a free path there is no {_quantity(row)}, which is there {have}{claimed}"
+    claimed = f"; {_describe_claim(row, check)}" if check.against and check.direction else ""
+    return f"without a free path there is no {_name_quantity(row)}, which is there {have}{claimed}"
 
 
 _TEMPLATES = {
-    "lower": _between,
-    "equal_within": _equal,
-    "trend": _trend,
-    "share": _share,
-    "function": _function,
+    "lower": _describe_lower,
+    "equal_within": _describe_equal,
+    "trend": _describe_trend,
+    "share": _describe_share,
+    "function": _describe_function,
 }
 
 
-def _quantity(row: Row) -> str:
-    """What is measured, with its statistic: `exact arc length (mean)`."""
+def _name_quantity(row: Row) -> str:
+    """Name the quantity that is measured, with its statistic: `exact arc length (mean)`."""
     statistic = row["statistic"]
     metric = row["metric"] or ""
-    measured = meaning(metric).partition(";")[0] or metric.replace("_", " ")
+    measured = describe_metric(metric).partition(";")[0] or metric.replace("_", " ")
     return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
 
 
-def meaning(metric: str) -> str:
-    """What a metric measures, in a phrase; empty if it is not one of the metrics of runs."""
+def describe_metric(metric: str) -> str:
+    """Describe a metric in a phrase; empty if it is not one of the metrics of runs."""
     return METRICS[metric].meaning if metric in METRICS else ""
 
 
-def _unit(row: Row) -> str:
+def _format_unit(row: Row) -> str:
+    """Format the unit of a row to follow a number; empty if it has none."""
     return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
 
 
-def _amount(value: float, row: Row, check: ClaimCheck) -> str:
-    """An effect with its unit; a relative one in per cent."""
+def _format_amount(value: float, row: Row, check: ClaimCheck) -> str:
+    """Format an effect with its unit; a relative one in per cent."""
     if check.relative:
-        return f"{number(100 * value)} %"
-    return amount(number(value), _unit(row).strip()).strip()
+        return f"{format_number(100 * value)} %"
+    return format_amount(format_number(value), _format_unit(row).strip()).strip()
 
 
-def _interval(row: Row, check: ClaimCheck) -> str:
+def _format_interval(row: Row, check: ClaimCheck) -> str:
+    """Format the 95 % interval of a row like its effect; empty without one."""
     ends, unit = [row["low95"], row["high95"]], ""
     if None in ends:
         return ""
@@ -303,24 +320,26 @@ def _interval(row: Row, check: ClaimCheck) -> str:
         ends, unit = [1 + end for end in ends], " times"
     elif check.relative:
         ends, unit = [100 * end for end in ends], " %"
-    return f" (95 % interval {' to '.join(map(number, ends))}{unit})"
+    return f" (95 % interval {' to '.join(map(format_number, ends))}{unit})"
 
 
-def _margin(row: Row, check: ClaimCheck) -> str:
-    """The limit within which a difference does not count, and who chose it."""
+def _describe_margin(row: Row, check: ClaimCheck) -> str:
+    """Describe the limit within which a difference does not count, and who chose it."""
     if row["margin"] is None:
         return ""
     printed = isinstance(check, OfRuns) and isinstance(check.margin, PublishedMargin)
     origin = "our choice, and not more than the printed difference" if printed else "our choice"
-    return f"; differences below {_amount(row['margin'], row, check)} do not count ({origin})"
+    return (
+        f"; differences below {_format_amount(row['margin'], row, check)} do not count ({origin})"
+    )
 
 
 # Notes
 
 
-def by_own_criterion(claim: Claim, verdict: str) -> str:
-    """The first words of the reason for a claim that holds, or does not, by a threshold of ours,
-    where the paper gives no number.
+def note_own_criterion(claim: Claim, verdict: str) -> str:
+    """Return the first words of the reason for a claim that holds, or does not, by a threshold of
+    ours, where the paper gives no number.
     """
     if claim.criterion is None or verdict == "undecided":
         return ""
@@ -328,9 +347,9 @@ def by_own_criterion(claim: Claim, verdict: str) -> str:
     return f"{word} by our criterion alone"
 
 
-def less_than(deciding: Sequence[MarkedComparison], verdict: str, unit: str) -> str:
-    """Of a claim without effect: below what size all differences that are shown to be negligible
-    lie; empty for any other.
+def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: str) -> str:
+    """Say below what size all negligible differences of a claim without effect lie; empty for any
+    other.
     """
     within = [each for each in deciding if each.mark_family == "0"]
     if verdict != "no effect" or not within:
@@ -347,31 +366,35 @@ def less_than(deciding: Sequence[MarkedComparison], verdict: str, unit: str) -> 
 # Where a claim holds
 
 
-def _in_words(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> Entry:
-    """A comparison with the factors that distinguish it from the others of its claim."""
+def _list_factors(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> Entry:
+    """List the factors that distinguish a comparison from the others of its claim, with
+    its mark.
+    """
     factors: dict[str, Any] = {}
     if entry.comparison is not None:
         if entry.check.against and not entry.parts:
-            group, other = (_group(entry.check, cell) for cell in entry.comparison.cells)
+            group, other = (_name_group(entry.check, cell) for cell in entry.comparison.cells)
             factors |= {"against": other, "group": group}
         factors |= dict(entry.place)
-    if len({_what(other.check) for other in deciding}) > 1:
-        factors["what"] = _what(entry.check)
+    if len({_describe_check(other.check) for other in deciding}) > 1:
+        factors["what"] = _describe_check(entry.check)
     return Entry(factors, entry.mark_family)
 
 
-def _what(check: ClaimCheck) -> str:
-    """What a check compares, in words."""
+def _describe_check(check: ClaimCheck) -> str:
+    """Describe what a check compares, in words."""
     statistic = check.statistic if "statistic" in check.model_fields_set else ""
     return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
 
 
-def where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, str]) -> str:
-    """`told_apart` of the comparisons that decide; if all or none of these hold, which
-    they may do because of the closest of several that are taken together, of these one by one.
+def describe_where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, str]) -> str:
+    """Say where a claim holds (`describe_split`), by the comparisons that decide.
+
+    If all or none of these hold, because the closest of several taken together decides, say it by
+    those one by one.
     """
     deciding = [each for each in findings if each.primary]
-    words = told_apart([_in_words(each, deciding) for each in deciding], labels)
+    words = describe_split([_list_factors(each, deciding) for each in deciding], labels)
     single = [
         each._replace(mark_family=each.mark)
         for each in findings
@@ -379,25 +402,25 @@ def where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, st
     ]
     if words or not any(each.mark == "+" for each in single):
         return words
-    words = told_apart([_in_words(each, single) for each in single], labels)
+    words = describe_split([_list_factors(each, single) for each in single], labels)
     return f"taken singly, {words}" if words else ""
 
 
-def _group(check: ClaimCheck, group: Any) -> Any:
-    """A group's name; for a number, which a file may hold as text, with its column."""
+def _name_group(check: ClaimCheck, group: Any) -> Any:
+    """Name a group; a number, which a file may hold as text, gets the name of its column."""
     if isinstance(group, str) and check.cells != "method":
         with suppress(ValueError):
             group = float(group)
     return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
 
 
-def disagreement(findings: Sequence[MarkedComparison]) -> str:
-    """A note where seconds disagree with the counted work that is judged in their place."""
-    seconds = {_key(each): each.mark for each in findings if each.check.timed}
+def note_disagreement(findings: Sequence[MarkedComparison]) -> str:
+    """Note where seconds disagree with the counted work that is judged in their place."""
+    seconds = {_build_key(each): each.mark for each in findings if each.check.timed}
     pairs = [
-        (each.mark, seconds[_key(each)])
+        (each.mark, seconds[_build_key(each)])
         for each in findings
-        if each.primary and _key(each) in seconds and each.check._printed_metric
+        if each.primary and _build_key(each) in seconds and each.check._printed_metric
     ]
     differing = sum(mark != other for mark, other in pairs)
     return (
@@ -407,8 +430,8 @@ def disagreement(findings: Sequence[MarkedComparison]) -> str:
     )
 
 
-def _key(entry: MarkedComparison) -> tuple:
-    """What a comparison is, whichever of those that it takes together decides."""
+def _build_key(entry: MarkedComparison) -> tuple:
+    """Build the key of a comparison, the same whichever of those that it takes together decides."""
     return entry.place, len(entry.parts) or entry.terms
 
 
@@ -421,22 +444,22 @@ class Entry(NamedTuple):
     mark: str
 
 
-def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
-    """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
+def describe_split(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
+    """Describe which comparisons of a claim hold and which do not; empty if all or none do.
 
-    They are split by the factor that best separates those that hold from those that do not; of a
-    value with both, it says how many hold. If none holds, the words are about the contrary.
+    They are split by the factor that best separates those that hold from those that do not; for a
+    value with both, the text says how many hold. If none holds, the words are about the contrary.
     labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
     """
     sought = "+" if any(each.mark == "+" for each in comparisons) else "-"
     held = sum(each.mark == sought for each in comparisons)
     if held in (0, len(comparisons)):
         return ""
-    factor, marks = _best_split(comparisons, sought)
+    factor, marks = _find_best_split(comparisons, sought)
     full = [value for value, own in marks.items() if all(own)]
-    words = [_chosen(factor, full, list(marks), labels)] if full else []
+    words = [_describe_subset(factor, full, list(marks), labels)] if full else []
     words += [
-        f"{_before(factor)}{_name(value, labels)} in {sum(own)} of {len(own)}"
+        f"{_choose_preposition(factor)}{_name_value(value, labels)} in {sum(own)} of {len(own)}"
         for value, own in marks.items()
         if any(own) and not all(own)
     ]
@@ -446,9 +469,13 @@ def told_apart(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
     return ("" if sought == "+" else "the contrary ") + "; ".join(words)
 
 
-def _best_split(comparisons: Sequence[Entry], sought: str) -> tuple[str, dict[Any, list[bool]]]:
-    """The factor of all comparisons with the least mixed values (Gini impurity), the first among
-    equals, and by value which of its comparisons have the mark; empty if none has two values.
+def _find_best_split(
+    comparisons: Sequence[Entry], sought: str
+) -> tuple[str, dict[Any, list[bool]]]:
+    """Find the factor of all comparisons with the least mixed values (Gini impurity), the first
+    among equals.
+
+    Returns it, and by value which of its comparisons have the mark; empty if none has two values.
     """
     best, least = ("", {}), np.inf
     for factor in comparisons[0].factors:
@@ -463,29 +490,31 @@ def _best_split(comparisons: Sequence[Entry], sought: str) -> tuple[str, dict[An
     return best
 
 
-def _chosen(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
-    """Words for a subset of a factor's values."""
+def _describe_subset(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
+    """Describe a subset of a factor's values."""
     others = [value for value in every if value not in subset]
-    before = _before(factor)
+    before = _choose_preposition(factor)
     few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
     if few and before.startswith("at "):
-        return f"{before}other than {_joined(others, labels)}"
+        return f"{before}other than {_join_names(others, labels)}"
     if few:
-        return f"{before}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
-    return f"{before}{_joined(subset, labels)}"
+        return f"{before}{len(subset)} of {len(every)}: all but {_join_names(others, labels)}"
+    return f"{before}{_join_names(subset, labels)}"
 
 
-def _joined(values: list, labels: Mapping[str, str]) -> str:
-    names = [_name(value, labels) for value in values]
+def _join_names(values: list, labels: Mapping[str, str]) -> str:
+    """Join the names of values by commas and a last `and`."""
+    names = [_name_value(value, labels) for value in values]
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def _name(value: Any, labels: Mapping[str, str]) -> str:
+def _name_value(value: Any, labels: Mapping[str, str]) -> str:
+    """Name a value by its label, or else by its text."""
     return labels.get(str(value), f"{value:g}" if isinstance(value, float) else str(value))
 
 
-def _before(factor: str) -> str:
-    """The word before the values of a factor."""
+def _choose_preposition(factor: str) -> str:
+    """Choose the word before the values of a factor."""
     words = {"against": "against", "group": "for", "method": "for"}
     places = ("what", "workspace", "problem", "experiment", "in")
     return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

@@ -8,8 +8,8 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import convert_to_list
 
 
-def variants(claim: Claim) -> list[dict[str, Any]]:
-    """Every combination of the values of a claim's variants, column -> value; the first one is
+def list_variants(claim: Claim) -> list[dict[str, Any]]:
+    """List every combination of the values of a claim's variants, column -> value; the first one is
     primary.
     """
     return [
@@ -17,27 +17,26 @@ def variants(claim: Claim) -> list[dict[str, Any]]:
     ]
 
 
-def name_of(assignment: dict[str, Any]) -> str:
-    """The name of an assignment in claims.csv, by which random draws are seeded."""
+def name_variant(assignment: dict[str, Any]) -> str:
+    """Name a variant as in claims.csv; the name seeds its random draws."""
     return ", ".join(
         f"{column}={' '.join(map(str, convert_to_list(value)))}"
         for column, value in assignment.items()
     )
 
 
-def in_variant(
+def apply_variant(
     checks: list[ClaimCheck], first: dict[str, Any], assignment: dict[str, Any]
 ) -> list[ClaimCheck]:
-    """The checks with the values of an assignment instead of the first ones, wherever a check names
-    those.
+    """Replace the first values by those of an assignment, wherever a check names them.
 
     Lists are replaced member by member. A column whose first value no check names becomes one more
     condition of `where`, and None there is no condition.
     """
     for column, chosen in assignment.items():
         pairs = dict(zip(convert_to_list(first[column]), convert_to_list(chosen), strict=True))
-        if any(_exchanged(check, column, dict.fromkeys(pairs)) != check for check in checks):
-            checks = [_exchanged(check, column, pairs) for check in checks]
+        if any(_replace_in_check(check, column, dict.fromkeys(pairs)) != check for check in checks):
+            checks = [_replace_in_check(check, column, pairs) for check in checks]
         elif chosen is not None:
             checks = [
                 check.but(where=check.where | {column: chosen}) if has_runs(check) else check
@@ -47,32 +46,34 @@ def in_variant(
 
 
 def has_runs(check: ClaimCheck) -> bool:
-    """Whether a check selects runs."""
+    """Return whether a check selects runs."""
     return "where" in type(check).model_fields
 
 
-def _exchanged(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck:
+def _replace_in_check(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck:
+    """Replace values in a check, wherever it names the column."""
     keys = [column] if column in ("metric", "experiment") else []
     keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
     written = check.model_fields_set.intersection(keys)
-    changed = {key: _replaced(getattr(check, key), pairs) for key in written}
+    changed = {key: _replace_values(getattr(check, key), pairs) for key in written}
     if has_runs(check) and column in check.where:
-        changed["where"] = check.where | {column: _replaced(check.where[column], pairs)}
+        changed["where"] = check.where | {column: _replace_values(check.where[column], pairs)}
     return check.but(**changed)
 
 
-def _replaced(values: Any, pairs: dict) -> Any:
+def _replace_values(values: Any, pairs: dict) -> Any:
+    """Replace values, also within lists, by their partners in pairs."""
     return (
-        [_replaced(value, pairs) for value in values]
+        [_replace_values(value, pairs) for value in values]
         if isinstance(values, list)
         else pairs.get(values, values)
     )
 
 
-def with_work(check: ClaimCheck) -> list[ClaimCheck]:
-    """A check of seconds that names counted work, split into a primary check of the work and a
-    secondary one of the seconds.
+def split_work(check: ClaimCheck) -> list[ClaimCheck]:
+    """Split a check of seconds that names counted work into a primary check of the work and a
+    secondary one of the seconds; any other check stays alone.
     """
     if not isinstance(check, OfRuns) or check.work is None:
         return [check]
-    return [check.of_work(), check.reported()]
+    return [check.use_work(), check.report_only()]

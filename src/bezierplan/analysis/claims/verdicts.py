@@ -21,7 +21,7 @@ of a claim's primary checks in one variant. The procedure is a standard one at e
 - In addition to p, a `+` or `-` needs an effect as large as the margin (Goodman, Spruill and
   Komaroff 2019, Am. Stat. 73, 168).
 - Comparisons that a check takes together are one comparison in the family: `+` by the
-  intersection-union test, `-` by Bonferroni within it (`conjunction`).
+  intersection-union test, `-` by Bonferroni within it (`combine_findings`).
 - A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet.
   Biopharm. 15, 657).
 """
@@ -38,15 +38,15 @@ from bezierplan.analysis.claims.effects import ALPHA, Finding
 DECIDED, HOLDING = 0.5, 0.75
 
 
-def family(p: np.ndarray) -> np.ndarray:
-    """p (n,) of a family, corrected by Benjamini and Hochberg's step-up procedure: (n,)."""
+def compute_family_p(p: np.ndarray) -> np.ndarray:
+    """Correct the p (n,) of a family by Benjamini and Hochberg's step-up procedure: (n,)."""
     from scipy import stats
 
     return stats.false_discovery_control(p)
 
 
-def mark(finding: Finding, p: float) -> str:
-    """The mark of a comparison, from its own p or that of its family."""
+def choose_mark(finding: Finding, p: float) -> str:
+    """Choose the mark of a comparison by its own p or that of its family."""
     if finding.mark:
         return finding.mark
     if finding.toward and p < ALPHA:
@@ -54,15 +54,15 @@ def mark(finding: Finding, p: float) -> str:
     return "0" if finding.negligible else "?"
 
 
-def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:
-    """The finding that all of some (at least one) hold together, and the number of the decisive
-    one, whose effect it has.
+def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
+    """Combine findings (at least one) into one that they all hold together; return it and the
+    number of the decisive one, whose effect it has.
 
     It holds as surely as the least sure of them (intersection-union), and fails if the surest
     contrary one does, corrected by Bonferroni for their number. It is negligible if one of them is,
     since the sentence asks for a difference in each.
     """
-    tested = [_as_tested(each) for each in findings]
+    tested = [_give_p(each) for each in findings]
     against = [number for number, each in enumerate(tested) if each.toward < 0]
     order = {number: 2.0 if math.isnan(each.p) else each.p for number, each in enumerate(tested)}
     if against:
@@ -76,8 +76,8 @@ def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:
     return findings[decisive]._replace(mark="", p=p, toward=toward, negligible=negligible), decisive
 
 
-def _as_tested(finding: Finding) -> Finding:
-    """A finding whose mark does not follow from p as one that has the same mark by its p."""
+def _give_p(finding: Finding) -> Finding:
+    """Give a finding whose mark does not follow from p the p of the same mark."""
     if not finding.mark:
         return finding
     toward = {"+": 1, "-": -1}.get(finding.mark, 0)
@@ -85,13 +85,14 @@ def _as_tested(finding: Finding) -> Finding:
     return finding._replace(toward=toward, p=p, negligible=finding.mark == "0")
 
 
-def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
-    """The verdict on a claim that holds if `all` or `any` comparisons do, or all `together`, from
-    their marks alone and in the family (at least one).
+def judge_marks(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
+    """Judge a claim by the marks of its comparisons (at least one) alone and in the family.
+
+    holds: whether `all` comparisons have to hold, `any`, or all `together` as one sentence.
     """
     marks = set(together)
     if holds == "together":
-        return _as_one(set(alone), marks)
+        return _judge_as_one(set(alone), marks)
     if set(alone) == {"+"} or (holds == "any" and "+" in marks):
         return "supported"
     if holds == "any":
@@ -99,15 +100,15 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
             "contradicted" if set(alone) == {"-"} else "undecided" if "?" in marks else "no effect"
         )
     if "+" in marks:
-        return _partly(together)
+        return _judge_partly(together)
     if "-" in marks:
         return "contradicted"
     return "undecided" if "?" in marks else "no effect"
 
 
-def _as_one(alone: set[str], together: set[str]) -> str:
-    """The verdict on a sentence that fails as soon as one of its comparisons does: the best of
-    eight is better than each of the others.
+def _judge_as_one(alone: set[str], together: set[str]) -> str:
+    """Judge a sentence that fails as soon as one of its comparisons does: the best of eight is
+    better than each of the others.
     """
     if alone == {"+"}:
         return "supported"
@@ -118,7 +119,8 @@ def _as_one(alone: set[str], together: set[str]) -> str:
     return "undecided"
 
 
-def _partly(marks: Sequence[str]) -> str:
+def _judge_partly(marks: Sequence[str]) -> str:
+    """Judge a claim of which some comparisons hold: partly, or undecided if too many are open."""
     decided = [mark for mark in marks if mark != "?"]
     # Where all that is decided holds, the open comparisons may all hold as well: `partly` says that
     # some do not.

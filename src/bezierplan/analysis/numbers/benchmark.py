@@ -21,10 +21,12 @@ STORED = TREE / "docs" / "outcome" / "methods.csv"
 """What the papers' methods give on each problem."""
 
 
-def summaries(runs: pd.DataFrame) -> pd.DataFrame:
-    """A row for each problem and method of runs: problem, method, number of runs, feasible (their
-    share), the medians of length, excess (over the exact shortest path's, `shortest`) and curvature
-    of these, and those of evaluations and cpu_s of all.
+def compute_summaries(runs: pd.DataFrame) -> pd.DataFrame:
+    """Summarise the runs of each problem and method in a row.
+
+    Columns: problem, method, number of runs, feasible (their share), the medians of length, excess
+    (over the exact shortest path's, `shortest`) and curvature of these, and those of evaluations
+    and cpu_s of all.
     """
     rows = runs.assign(excess=runs["length"] / runs["shortest"] - 1).astype({"feasible": bool})
     rows[_OF_FREE] = rows[_OF_FREE].where(rows["feasible"])
@@ -36,10 +38,11 @@ def summaries(runs: pd.DataFrame) -> pd.DataFrame:
     ).reset_index()
 
 
-def scores(rows: pd.DataFrame) -> pd.DataFrame:
-    """A row for each method of summaries, the best mean rank first. On each problem methods are
-    ranked by the share of feasible runs, and of equal ones by the excess; equal ones share the mean
-    of their ranks.
+def rank_methods(rows: pd.DataFrame) -> pd.DataFrame:
+    """Rank methods by their summaries, a row each, the best mean rank first.
+
+    On each problem methods are ranked by the share of feasible runs, and equal ones by the excess;
+    if that is equal too, they share the mean of their ranks.
     """
     rows = rows.round({"excess": 6}).sort_values(["feasible", "excess"], ascending=[False, True])
     order = rows.groupby(["feasible", "excess"], sort=False, dropna=False).ngroup()
@@ -50,17 +53,19 @@ def scores(rows: pd.DataFrame) -> pd.DataFrame:
     return table.rename(columns={"problem": "problems"}).sort_values("rank", kind="stable")
 
 
-def stored(experiment: str) -> pd.DataFrame:
-    """The summaries of the papers' methods on an experiment, `study/name`."""
+def read_stored(experiment: str) -> pd.DataFrame:
+    """Read the stored summaries of the papers' methods on an experiment, `study/name`."""
     rows = pd.read_csv(STORED).rename(columns={"free": "feasible"})
     study, _, name = experiment.partition("/")
     return rows.loc[(rows["study"] == study) & (rows["experiment"] == name), _SCORED]
 
 
 def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path | None, float]]:
-    """Problem, path and evaluations of each row of a csv file with the columns problem, curve and
-    points (x y x y ...), and perhaps evaluations. A row without points is a run without a path.
-    Raises Fault for a column that is missing, and for a problem that is not among those named.
+    """Read problem, path and evaluations from each row of a csv file with the columns problem,
+    curve and points (x y x y ...), and perhaps evaluations.
+
+    A row without points is a run without a path. Raises Fault for a column that is missing, and for
+    a problem that is not among those named.
     """
     paths = []
     rows = pd.read_csv(file, dtype={"problem": str, "points": str})
@@ -75,8 +80,8 @@ def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path 
     return paths
 
 
-def problem_rows(problems: Mapping[str, Problem]) -> pd.DataFrame:
-    """A row a problem: its ends, its map as JSON, and the exact shortest length."""
+def list_problems(problems: Mapping[str, Problem]) -> pd.DataFrame:
+    """List the problems, a row each: its ends, its map as JSON, and the exact shortest length."""
     rows = [
         {
             "problem": name,

@@ -15,8 +15,8 @@ number. Columns:
 - n_ours: our runs that count: feasible ones for metrics of feasible paths, all for the others
 - n_asked: runs among which these are: the others failed, or have no such value
 - value_ours: the statistic of these runs
-- value_ours_scaled: the same for n_published runs (`statistics.scaled`): counts and extremes depend
-  on their number
+- value_ours_scaled: the same for n_published runs (`statistics.scale_statistic`): counts and
+  extremes depend on their number
 - low95_ours, high95_ours: 95 % bootstrap interval of value_ours; empty below two runs, and for min,
   max and range
 - low95_predicted, high95_predicted: the range of ours: what 95 % of experiments of n_published runs
@@ -26,7 +26,7 @@ number. Columns:
   `no range`: for times, and below six runs
 - wide: whether the range is too wide to tell: it holds at least half of the other numbers that the
   paper prints for the metric and statistic in the same condition, or in all if there are none
-- reason: why the position proves nothing of the paper (`reasons`); empty if it may
+- reason: why the position proves nothing of the paper (`find_reasons`); empty if it may
 - possible: whether the metric can have the published value, and ranks add up. A length below the
   bound of our map is judged all the same
 - share_feasible: share of all runs whose path the certified checker accepts
@@ -47,7 +47,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.numbers import tables
-from bezierplan.analysis.results import Results, groups, keys_of, printed_numbers, select
+from bezierplan.analysis.results import Results, group_rows, list_keys, read_printed_numbers, select
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.seeds import generator
@@ -105,18 +105,18 @@ COLUMNS = [
 
 
 def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
-    """The published numbers of a table: key columns, metric, statistic, n, unit, value, as_printed
-    (the value's text). Without a file, empty, with the table's keys.
+    """Read the published numbers of a table: key columns, metric, statistic, n, unit, value,
+    as_printed (the value's text). Without a file, the table is empty, with the table's keys.
     """
     if file is None:
         columns = ("metric", "statistic", "n", "unit", "value", "as_printed")
         return pd.DataFrame(columns=[*spec.key_columns, *columns])
-    return as_read(printed_numbers(file), spec.reads)
+    return assign_metrics(read_printed_numbers(file), spec.reads)
 
 
-def as_read(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
-    """Published numbers under the metrics that a table assigns to them. reads: the paper's word ->
-    the metric.
+def assign_metrics(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
+    """Assign to published numbers the metrics under which a table reads them. reads: the paper's
+    word -> the metric.
     """
     return published.assign(metric=published["metric"].replace(reads))
 
@@ -131,28 +131,27 @@ def compare(
     reconstructed: Collection[str] = (),
     fitted: dict[str, dict] | None = None,
 ) -> pd.DataFrame:
-    """The published numbers of a table next to ours, in the order of the table; the columns are
-    described above.
+    """Compare the published numbers of a table with ours, in the order of the table; the columns
+    are described above.
 
-    published: as from `read_published`. variant_of: method -> the
-    method whose published numbers it is compared with. baselines: methods without a published
-    number. Variants of the table's methods and baselines get rows, whether or not the table shows
-    them. name: `study/table`, which seeds each row's random draws. reconstructed, fitted: as in
-    `reasons`.
+    published: as from `read_published`. variant_of: method -> the method whose published numbers it
+    is compared with. baselines: methods without a published number. Variants of the table's methods
+    and baselines get rows, whether or not the table shows them. name: `study/table`, which seeds
+    each row's random draws. reconstructed, fitted: as in `find_reasons`.
     """
-    key_columns = keys_of(published)
+    key_columns = list_keys(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
     methods, beside = convert_to_list(spec.where.get("method", [])), []
     if methods and "method" in keys:
         variants = [variant for variant, method in variant_of.items() if method in methods]
         beside = [name for name in variants + baselines if name not in methods]
         spec = spec.but(where=spec.where | {"method": methods + beside})
-    ours = tables.cells(results, spec, keys, beside)
-    ours = tables.placed(ours, spec, list(results.problems))
-    marked = published.assign(impossible=impossible_ranks(published, spec))
-    both = _side_by_side(ours, marked, key_columns, variant_of)
+    ours = tables.compute_cells(results, spec, keys, beside)
+    ours = tables.place_cells(ours, spec, list(results.problems))
+    marked = published.assign(impossible=find_impossible_ranks(published, spec))
+    both = _join_published(ours, marked, key_columns, variant_of)
     order = (
-        tables.in_order(both, spec, list(results.problems))
+        tables.order_keys(both, spec, list(results.problems))
         .sort_values([*keys, "value", "metric", "statistic"])
         .index
     )
@@ -160,14 +159,14 @@ def compare(
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     if spec.printed:
         _refuse_lost(both, spec, name)
-    both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
+    both["unit"] = [metrics.find_unit(metric, workspace_unit) for metric in both["metric"]]
     described = pd.DataFrame(
-        [_described(row, keys, name) for row in both.to_dict("records")], index=both.index
+        [_compute_row(row, keys, name) for row in both.to_dict("records")], index=both.index
     )
     table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    table["wide"] = _wide(both.join(table[RANGE]), published, key_columns)
-    table["reason"] = reasons(both, spec, reconstructed, fitted or {})
+    table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
+    table["reason"] = find_reasons(both, spec, reconstructed, fitted or {})
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
@@ -176,7 +175,7 @@ def compare(
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
-def reasons(
+def find_reasons(
     numbers: pd.DataFrame, spec: Pivot, reconstructed: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
     """Return why each number of a table proves nothing of the paper, wherever it lies; empty if it
@@ -205,7 +204,7 @@ def reasons(
     return reason_of
 
 
-def position(published: float, low: float, high: float) -> str:
+def find_position(published: float, low: float, high: float) -> str:
     """Return where a published number lies beside our range; NaN is no range."""
     if published < low:
         return "below"
@@ -214,16 +213,16 @@ def position(published: float, low: float, high: float) -> str:
     return "inside" if low <= published <= high else NO_RANGE
 
 
-def _quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
-    """Metric of each number, and the statistic with which a printed one is compared: the median
-    with one that the paper does not state.
+def _list_quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
+    """List the metric of each number, and the statistic with which a printed one is compared: the
+    median with one that the paper does not state.
     """
     return zip(numbers["metric"], numbers["statistic"].replace("unstated", "median"))
 
 
 def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
-    """Raise ValueError if a printed number that belongs into a table of the paper's form has no
-    cell there.
+    """Refuse a printed number that belongs into a table of the paper's form and has no cell there:
+    raise ValueError.
     """
     shown = {
         (entry.metric, each.replace("unstated", "median"))
@@ -232,7 +231,7 @@ def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
     }
     where = {column: values for column, values in spec.where.items() if column in both}
     own = select(both[both["value_published"].notna() & both["table_row"].isna()], where)
-    lost = own[[quantity in shown for quantity in _quantities(own)]]
+    lost = own[[quantity in shown for quantity in _list_quantities(own)]]
     if len(lost):
         first = lost.iloc[0]
         place = ", ".join(
@@ -244,34 +243,34 @@ def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
         )
 
 
-def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
-    """Which published numbers (n,) are mean ranks that no runs have, for those of all rows of the
-    table do not add up.
+def find_impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
+    """Find which published numbers (n,) are mean ranks that no runs have, because those of all rows
+    of the table do not add up.
 
     published: as from `read_published`.
     """
     impossible = np.zeros(len(published), dtype=bool)
     ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
-    for own in groups(ranks, [column for column in spec.across if column in published]):
-        printed = own["value"].astype(str).map(possible.printed)
-        if len(own) > 1 and not possible.are_ranks(printed):
+    for own in group_rows(ranks, [column for column in spec.across if column in published]):
+        printed = own["value"].astype(str).map(possible.read_printed)
+        if len(own) > 1 and not possible.can_be_ranks(printed):
             impossible |= published.index.isin(own.index)
     return impossible
 
 
-def _side_by_side(
+def _join_published(
     ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str], variant_of: dict[str, str]
 ) -> pd.DataFrame:
-    """Our cells with n_published and value_published, plus published numbers without runs;
+    """Join our cells with n_published and value_published, and add published numbers without runs;
     statistics are named as published.
 
     key_columns: the key columns of the published numbers.
     """
     theirs = published.rename(columns={"n": "n_published", "value": "value_published"})
     theirs = theirs.drop(columns="unit").astype({key: ours[key].dtype for key in key_columns})
-    names = dict(zip(_quantities(published), published["statistic"]))
+    names = dict(zip(_list_quantities(published), published["statistic"]))
     ours, theirs = (
-        table.assign(statistic=[names.get(each, each[1]) for each in _quantities(table)])
+        table.assign(statistic=[names.get(each, each[1]) for each in _list_quantities(table)])
         for table in (ours, theirs)
     )
     if "method" in key_columns:
@@ -284,12 +283,14 @@ def _side_by_side(
     return both
 
 
-def _wide(
+def _find_wide(
     numbers: pd.DataFrame, published: pd.DataFrame, key_columns: list[str]
 ) -> list[bool | None]:
-    """Return whether the range of each number holds at least half of the other printed numbers of
-    its metric, statistic and condition, or in all conditions if its own has none; None without a
-    range. numbers: with the columns of `RANGE`.
+    """Find which ranges are too wide to tell: they hold at least half of the other printed numbers
+    of the metric, statistic and condition, or in all conditions if their own has none. None without
+    a range.
+
+    numbers: with the columns of `RANGE`.
     """
     places = [key for key in key_columns if key != "method"]
     alike = dict([*published.groupby(["metric", "statistic"])])
@@ -309,9 +310,9 @@ def _wide(
     return wide
 
 
-def _described(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any]:
-    """Our side of one row, and the published number's position in it; empty for a published number
-    without runs of ours.
+def _compute_row(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any]:
+    """Compute our side of one row, and the published number's position in it; nothing for a
+    published number without runs of ours.
     """
     if pd.isna(row["runs"]):
         return {"n_ours": 0, "n_asked": 0, "position": NO_RANGE, "possible": None}
@@ -321,16 +322,16 @@ def _described(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any
     within, units, of_units = row["groups"] or None, numbers, statistic
     if within:
         # Runs of one group are alike: the groups are the units whose mean is uncertain.
-        units = np.array([statistics.statistic(statistic, group) for group in within])
+        units = np.array([statistics.compute_statistic(statistic, group) for group in within])
         of_units = "mean"
-    low, high = statistics.interval(of_units, units, generator(f"{row_name}/interval"))
+    low, high = statistics.compute_interval(of_units, units, generator(f"{row_name}/interval"))
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
-    scaled = statistics.scaled(statistic, numbers, int(row["size"]), size)
+    scaled = statistics.scale_statistic(statistic, numbers, int(row["size"]), size)
     cell = {
         "n_ours": len(numbers),
         "n_asked": int(row["size"]),
-        "value_ours": statistics.statistic(statistic, numbers),
+        "value_ours": statistics.compute_statistic(statistic, numbers),
         "value_ours_scaled": scaled,
         "low95_ours": low,
         "high95_ours": high,
@@ -343,20 +344,22 @@ def _described(row: dict[str, Any], keys: list[str], name: str) -> dict[str, Any
     if row["unit"] == "s":  # of another machine
         return cell | {"position": NO_RANGE}
     rng = generator(f"{row_name}/prediction")
-    found = statistics.prediction(statistic, numbers, size, rng, single, within)
-    low, high = as_printed(found, scaled, decimals)
+    found = statistics.compute_prediction_interval(statistic, numbers, size, rng, single, within)
+    low, high = round_range(found, scaled, decimals)
     return cell | {
         "low95_predicted": low,
         "high95_predicted": high,
-        "position": position(published, low, high),
+        "position": find_position(published, low, high),
     }
 
 
-def as_printed(ends: tuple[float, float], ours: float, decimals: int | None) -> tuple[float, float]:
-    """Return a range of least reach whose ends are the outermost printed numbers that lie in it by
-    half a unit of their last digit; without decimals, the range.
+def round_range(
+    ends: tuple[float, float], ours: float, decimals: int | None
+) -> tuple[float, float]:
+    """Round a range outwards to printed numbers: ends that lie in it by half a unit of their last
+    digit. The range has the least reach; without decimals, it is not rounded.
 
-    >>> as_printed((14.6, 31.4), 20.0, 0), as_printed((5.0, 5.0), 5.0, 3)
+    >>> round_range((14.6, 31.4), 20.0, 0), round_range((5.0, 5.0), 5.0, 3)
     ((15.0, 31.0), (4.995, 5.005))
     """
     reach = LEAST_REACH * abs(ours)
@@ -374,21 +377,22 @@ def as_printed(ends: tuple[float, float], ours: float, decimals: int | None) -> 
     return tuple(map(float, ends))
 
 
-def beside(number: Mapping[str, Any]) -> str:
-    """Return a published number's sign and our range; empty without a range. number: a row, of
+def describe_range(number: Mapping[str, Any]) -> str:
+    """Describe a published number's sign and our range; empty without a range. number: a row, of
     which an empty cell is None, NaN or "".
 
-    >>> beside({"position": "above", "wide": False, "low95_predicted": 15, "high95_predicted": 32})
+    >>> ends = {"low95_predicted": 15, "high95_predicted": 32}
+    >>> describe_range({"position": "above", "wide": False} | ends)
     '▲ ours 15 to 32'
     """
     if number["position"] not in SIGNS:
         return ""
     narrow, wide = SIGNS[number["position"]]
-    return f"{wide if str(number['wide']) == 'True' else narrow} ours {range_text(number)}"
+    return f"{wide if str(number['wide']) == 'True' else narrow} ours {format_range(number)}"
 
 
-def range_text(number: Mapping[str, Any]) -> str:
-    """Return our range in words; an end that our runs do not determine is left out."""
+def format_range(number: Mapping[str, Any]) -> str:
+    """Format our range in words; an end that our runs do not determine is left out."""
     ends = [number["low95_predicted"], number["high95_predicted"]]
     low, high = (math.inf if end in ("", None) else float(end) for end in ends)
     if not math.isfinite(low):
@@ -398,13 +402,15 @@ def range_text(number: Mapping[str, Any]) -> str:
 
 def is_possible(row: Mapping[str, Any], size: int | None) -> bool:
     """Return whether runs can have the published number, up to half a unit of its last digit."""
-    low, high = _limits(row["statistic"], (row["least"], row["most"]), size)
+    low, high = _find_limits(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
     return low - half <= row["value_published"] <= high + half
 
 
-def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:
-    """The range of a statistic of runs whose single values lie in a given range."""
+def _find_limits(
+    statistic: str, single: tuple[float, float], size: int | None
+) -> tuple[float, float]:
+    """Find the range of a statistic of runs whose single values lie in a given range."""
     if statistic in ("std", "iqr", "range"):
         return 0.0, math.inf
     if statistic in ("count", "share"):

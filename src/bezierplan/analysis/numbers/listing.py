@@ -6,22 +6,22 @@ from collections.abc import Callable, Mapping
 
 import pandas as pd
 
-from bezierplan.analysis.results import published_table
+from bezierplan.analysis.results import read_published_table
 from bezierplan.analysis.table_kinds import FunctionTable, Transcript
 
 
-def table(
+def build_table(
     spec: Transcript | FunctionTable,
     files: Mapping[str, str],
     functions: Mapping[str, Callable[..., pd.DataFrame]],
 ) -> pd.DataFrame:
-    """A transcribed table (every cell as written), or that of a function (called with all published
-    tables by file name, and with its arguments).
+    """Build a table without runs: a transcribed one (every cell as written), or that of a function
+    (called with all published tables by file name, and with its arguments).
 
     files: of published numbers, by table; for a transcribed table its only file.
     """
     if isinstance(spec, Transcript):
         (file,) = files.values()
         return pd.read_csv(file, dtype=str, keep_default_na=False)
-    published = {name: published_table(file) for name, file in files.items()}
+    published = {name: read_published_table(file) for name, file in files.items()}
     return functions[spec.function](published, **spec.arguments)

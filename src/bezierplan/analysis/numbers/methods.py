@@ -26,7 +26,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, naming, statistics
-from bezierplan.analysis.results import Results, path_of
+from bezierplan.analysis.results import Results, build_path
 from bezierplan.geometry.tightest_turn import largest_curvature
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces.problem import Problem
@@ -70,24 +70,27 @@ class Family(NamedTuple):
         )
 
 
-def measured(experiment: str, results: Results, families: Mapping[str, Family]) -> pd.DataFrame:
-    """Return a row for each problem and method of an experiment: `COLUMNS` but for study and
+def measure_methods(
+    experiment: str, results: Results, families: Mapping[str, Family]
+) -> pd.DataFrame:
+    """Measure each method on each problem of an experiment, a row each: `COLUMNS` but for study and
     proposed.
     """
     runs = results.runs.assign(
         free=results.runs["feasible"].astype(bool),
-        gap=metrics.values(results.runs, "gap", results.problems),
-        corners=metrics.values(results.runs, "corners", results.problems),
+        gap=metrics.compute_values(results.runs, "gap", results.problems),
+        corners=metrics.compute_values(results.runs, "corners", results.problems),
     )
-    return pd.DataFrame(_rows(experiment, runs, results.problems, families))
+    return pd.DataFrame(_list_rows(experiment, runs, results.problems, families))
 
 
-def _rows(
+def _list_rows(
     experiment: str,
     runs: pd.DataFrame,
     problems: Mapping[str, Problem],
     families: Mapping[str, Family],
 ) -> Iterator[dict[str, Any]]:
+    """Yield the row of each method on each problem."""
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
@@ -99,7 +102,7 @@ def _rows(
             smooth = free[free["corners"] == 0]
             excess = free["gap"].to_numpy()
             draws = generator(f"methods/{experiment}/{name}/{method}")
-            low, high = statistics.interval("median", excess, draws)
+            low, high = statistics.compute_interval("median", excess, draws)
             yield {
                 **names,
                 "method": method,
@@ -111,21 +114,21 @@ def _rows(
                 "excess_high": high,
                 "round": len(smooth),
                 "cornered": len(free) - len(smooth),
-                **(_turns(smooth, problem, bound) if family else {}),
+                **(_measure_turns(smooth, problem, bound) if family else {}),
                 "cpu_ms": 1000 * of_method["cpu_s"].median(),
                 "evaluations": of_method["evaluations"].median(),
             }
 
 
-def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, float]:
-    """Return how tightly paths without corners turn, and what a rounded shortest path that may turn
-    so gives; nothing if there are no such paths.
+def _measure_turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, float]:
+    """Measure how tightly paths without corners turn, and what a rounded shortest path that may
+    turn so gives; nothing if there are no such paths.
     """
     if smooth.empty:
         return {}
     # The columns alone that a path needs: rows of all columns take longer than the curvature.
     measured = smooth[["path_curve", "path_points"]].head(_MEASURED)
-    paths = map(path_of, measured.to_dict("records"))
+    paths = map(build_path, measured.to_dict("records"))
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
@@ -137,26 +140,26 @@ def _turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict[str, fl
     }
 
 
-def of_studies(
+def measure_studies(
     proposed: Mapping[str, str | None],
     families: Mapping[str, Mapping[str, Family]],
     experiments: Mapping[str, Results],
 ) -> pd.DataFrame:
-    """Return the rows of all experiments, each `study/experiment`; `COLUMNS`. proposed, families:
-    by study.
+    """Measure the methods of all experiments, each `study/experiment`; return their rows with
+    `COLUMNS`. proposed, families: by study.
     """
     tables = []
     for place, results in experiments.items():
         study, _, name = place.partition("/")
-        rows = measured(name, results, families[study])
+        rows = measure_methods(name, results, families[study])
         tables.append(rows.assign(study=study, proposed=rows["method"] == proposed[study]))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
 
 
-def of_families(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return a row for each study, family and method of `methods.csv`, the least often free first,
-    and of equal ones the longest.
+def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
+    """Group the rows of `methods.csv` by study, family and method, the least often free first, and
+    of equal ones the longest.
 
     Columns: problems, runs; free, and worst, the share of the worst problem; over the problems the
     medians of excess, rounded and cpu_ms; round and cornered, free runs; both, the problems with a
@@ -180,8 +183,8 @@ def of_families(rows: pd.DataFrame) -> pd.DataFrame:
     return worst_first.drop(columns="frees").reset_index()
 
 
-def laid_out(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
-    """Return the rows of `of_families` as words, the index the method.
+def format_table(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+    """Format the rows of `group_by_family` as words; the index is the method.
 
     labels: name -> how it is printed; a name of several studies stands after `study/`.
     """
@@ -197,12 +200,13 @@ def laid_out(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
         {
             "scenarios": rows["family"].to_list(),
             "free paths": [
-                _share(row.free) + (f", worst {_share(row.worst)}" if row.worst < row.free else "")
+                _format_share(row.free)
+                + (f", worst {_format_share(row.worst)}" if row.worst < row.free else "")
                 for row in rows.itertuples()
             ],
-            "longer than the shortest": [*map(_share, rows["excess"])],
+            "longer than the shortest": [*map(_format_share, rows["excess"])],
             "rounded shortest path, turning as gently": [
-                _share(row.rounded) + end for row, end in zip(rows.itertuples(), corners)
+                _format_share(row.rounded) + end for row, end in zip(rows.itertuples(), corners)
             ],
             "shorter or smoother than that": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
@@ -214,5 +218,6 @@ def laid_out(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     )
 
 
-def _share(value: float) -> str:
-    return "–" if math.isnan(value) else f"{naming.number(round(100 * value, 2))} %"
+def _format_share(value: float) -> str:
+    """Format a share in per cent; a dash if there is none."""
+    return "–" if math.isnan(value) else f"{naming.format_number(round(100 * value, 2))} %"

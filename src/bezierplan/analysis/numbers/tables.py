@@ -15,16 +15,15 @@ import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
-from bezierplan.analysis.results import Results, repeated, select
+from bezierplan.analysis.results import Results, is_repeated, select
 from bezierplan.analysis.table_kinds import Pivot, TableValue
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
 
 
-def in_order(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
-    """The table with its key columns as ordered categories, so that sorting follows the
-    configuration.
+def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+    """Make the key columns ordered categories, so that sorting follows the configuration.
 
     Values are ordered as listed in `where`, problems as in their experiment, all others sorted
     after them; missing values are last.
@@ -72,8 +71,8 @@ class Cell(NamedTuple):
 
 
 class _Measures(NamedTuple):
-    """What an entry of `values` needs of each run (n,): whether it asks for it, and counts it; its
-    metric, bound and gap, and the least value that it can have.
+    """The numbers of each run (n,) for an entry of `values`: whether the entry asks for the run,
+    and counts it; its metric, bound and gap, and the least value that it can have.
     """
 
     selects: np.ndarray
@@ -84,22 +83,23 @@ class _Measures(NamedTuple):
     least: np.ndarray
 
 
-def cells(
+def compute_cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
-    """The numbers behind a table: one row for each entry of `values`, group of runs with equal
-    keys, and statistic; its columns are the keys and the fields of a `Cell`.
+    """Compute the numbers behind a table: one row for each entry of `values`, group of runs with
+    equal keys, and statistic; its columns are the keys and the fields of a `Cell`.
 
     beside: methods outside the table among those of its `where`, which metrics that compare methods
     leave out.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
-    once = ~repeated(runs)
+    once = ~is_repeated(runs)
 
     @cache
-    def measured(metric: str) -> np.ndarray:
-        return metrics.values(runs, metric, results.problems).to_numpy()
+    def measure(metric: str) -> np.ndarray:
+        """Measure all runs by a metric, once."""
+        return metrics.compute_values(runs, metric, results.problems).to_numpy()
 
     rows, by_keys = [], runs[keys].groupby(keys, dropna=False)
     for number, entry in enumerate(spec.values):
@@ -109,30 +109,32 @@ def cells(
             # It compares those that the entry's `where` leaves, and among others even a repeated
             # run has a rank of its own.
             among = own[~own["method"].isin(beside)]
-            compared = metrics.values(among, entry.metric, results.problems)
+            compared = metrics.compute_values(among, entry.metric, results.problems)
             values, counts = compared.reindex(runs.index).to_numpy(), True
         else:
-            values = measured(entry.metric)
+            values = measure(entry.metric)
         least = entry.least or metric.least
         columns = runs[[metric.bound]].assign(least=runs.get(least, least))
         bound, least = columns.to_numpy(dtype=float).T
-        of_runs = _Measures(selects, selects & counts, values, bound, measured(metric.gap), least)
+        of_runs = _Measures(selects, selects & counts, values, bound, measure(metric.gap), least)
         for key, group in by_keys:
-            cell = _cell(runs, group.index.to_numpy(), entry, of_runs, spec.within)
+            cell = _compute_cell(runs, group.index.to_numpy(), entry, of_runs, spec.within)
             cell = cell._replace(value=number)
             rows += [[*key, *cell._replace(statistic=name)] for name in entry.statistics]
     # Decimals of type object stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
 
 
-def _cell(
+def _compute_cell(
     runs: pd.DataFrame,
     places: np.ndarray,
     entry: TableValue,
     measures: _Measures,
     within: str | None,
 ) -> Cell:
-    """The cell of an entry and of the runs at some places, without its place and statistic."""
+    """Compute the cell of an entry from the runs at some places, without its place and
+    statistic.
+    """
     of_entry, counted = (places[mask[places]] for mask in (measures.selects, measures.counts))
     # A run without a value counts nowhere.
     chosen = counted[~np.isnan(measures.values[counted])]
@@ -145,8 +147,8 @@ def _cell(
         runs=len(places),
         draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
         share_feasible=runs["feasible"].to_numpy()[places].mean(),
-        bound=_median(measures.bound[places]),
-        gap=_median(measures.gap[places]),
+        bound=_compute_median(measures.bound[places]),
+        gap=_compute_median(measures.gap[places]),
         least=np.fmin.reduce(measures.least[places]),
         most=metrics.METRICS[entry.metric].most,
         value=0,
@@ -163,28 +165,27 @@ def _cell(
     )
 
 
-def _median(values: np.ndarray) -> float:
-    """The median of values (n,), NaN left out; NaN if no others remain."""
-    return statistics.statistic("median", values[~np.isnan(values)])
+def _compute_median(values: np.ndarray) -> float:
+    """Compute the median of values (n,) but for NaN; NaN if no others remain."""
+    return statistics.compute_statistic("median", values[~np.isnan(values)])
 
 
-def placed(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
-    """Cells as from `cells`, each with its place in the table, from 0. Added: table_row,
-    table_column.
-    """
+def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+    """Add to cells (`compute_cells`) their places in the table, from 0: table_row, table_column."""
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
-    ordered = in_order(groups, spec, problems)
+    ordered = order_keys(groups, spec, problems)
     ordered["statistic"] = pd.Categorical(groups["statistic"], categories=list(order), ordered=True)
     rows, columns = (
-        ordered.groupby(levels, dropna=False, observed=True).ngroup() for levels in _levels(spec)
+        ordered.groupby(levels, dropna=False, observed=True).ngroup()
+        for levels in _list_levels(spec)
     )
     return groups.assign(table_row=rows, table_column=columns)
 
 
-def laid(
+def lay_out(
     places: pd.DataFrame, values: Sequence, rows: pd.Index, columns: pd.Index, empty: Any = ""
 ) -> pd.DataFrame:
-    """A table of values, each at its place (`placed`), with these heads."""
+    """Lay out values as a table with these heads, each at its place (`place_cells`)."""
     table = np.full((len(rows), len(columns)), empty, dtype=object)
     table[places["table_row"].to_numpy(dtype=int), places["table_column"].to_numpy(dtype=int)] = (
         values
@@ -192,53 +193,57 @@ def laid(
     return pd.DataFrame(table, rows, columns)
 
 
-def pivot(
+def build_pivot(
     results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame | None = None
 ) -> pd.DataFrame:
-    """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
+    """Build a table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
     labels: how names are printed. published: as from `comparison.read_published`. Column levels are
     joined into one name, such as `objective value: smooth`; index levels stay columns of the csv
     file. A column of a table of the paper's form has the decimals of the printed one, or as many as
     its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
-    value, a column beside the values says how many have one (`_with_counts`).
+    value, a column beside the values says how many have one (`_add_counts`).
     """
-    table = placed(cells(results, spec, spec.key_columns), spec, list(results.problems))
-    values = [statistics.statistic(*each) for each in zip(table["statistic"], table["numbers"])]
+    table = place_cells(
+        compute_cells(results, spec, spec.key_columns), spec, list(results.problems)
+    )
+    values = [
+        statistics.compute_statistic(*each) for each in zip(table["statistic"], table["numbers"])
+    ]
     decimals = table["decimals"]
     if spec.printed and published is not None:
-        digits = published["as_printed"].map(possible.decimals)
+        digits = published["as_printed"].map(possible.count_decimals)
         usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
         decimals = table["metric"].map(usual).fillna(decimals).astype(int)
         counted = table["statistic"] == "count"
-        needed = map(_decimals, values, decimals, counted)
+        needed = map(_count_decimals, values, decimals, counted)
         decimals = pd.Series([*needed], table.index).groupby(table["table_column"]).transform("max")
     texts = ["" if np.isnan(each) else f"{each:.{n}f}" for each, n in zip(values, decimals)]
     titles = [entry.label for entry in spec.values]
     rows, heads = (
         table.drop_duplicates(place)
         .sort_values(place)[levels]
-        .apply(_labelled, labels=labels, titles=titles)
-        for place, levels in zip(("table_row", "table_column"), _levels(spec))
+        .apply(_label_level, labels=labels, titles=titles)
+        for place, levels in zip(("table_row", "table_column"), _list_levels(spec))
     )
-    index = _index(rows.rename(columns=labels))
+    index = _build_index(rows.rename(columns=labels))
     columns = pd.Index([": ".join(levels) for levels in heads.itertuples(index=False)])
-    wide = laid(table, texts, index, columns)
+    wide = lay_out(table, texts, index, columns)
     if spec.printed:
         return wide
     counted, asked = (
-        laid(table, numbers, index, columns, math.nan)
+        lay_out(table, numbers, index, columns, math.nan)
         for numbers in (table["numbers"].map(len), table["size"])
     )
     stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
-    return _with_counts(wide, counted, asked, [": ".join(levels) for levels in stems])
+    return _add_counts(wide, counted, asked, [": ".join(levels) for levels in stems])
 
 
-def _with_counts(
+def _add_counts(
     wide: pd.DataFrame, counted: pd.DataFrame, whole: pd.DataFrame, stems: list[str]
 ) -> pd.DataFrame:
-    """A table with a column such as `20 of 30` beside the values of which some runs have none, for
-    example because they failed.
+    """Add a column such as `20 of 30` beside the values of which some runs have none, for example
+    because they failed.
 
     counted, whole: how many runs have a value, and of how many, at the places of the table. stems:
     the name of each column without its statistic. Neighbouring columns with equal counts share one
@@ -262,8 +267,10 @@ def _with_counts(
     return pd.concat(columns, axis=1) if columns else wide
 
 
-def _levels(spec: Pivot) -> tuple[list[str], list[str]]:
-    """Levels of the index and of the columns, including necessary words that were left out."""
+def _list_levels(spec: Pivot) -> tuple[list[str], list[str]]:
+    """List the levels of the index and of the columns, including necessary words that were left
+    out.
+    """
     index, columns = list(spec.index), list(spec.columns)
     if "statistic" not in index + columns and any(
         len(entry.statistics) > 1 for entry in spec.values
@@ -274,13 +281,13 @@ def _levels(spec: Pivot) -> tuple[list[str], list[str]]:
     return index, columns
 
 
-def _index(levels: pd.DataFrame) -> pd.Index:
-    """The rows of a table as an index of one or several levels."""
+def _build_index(levels: pd.DataFrame) -> pd.Index:
+    """Build the rows of a table as an index of one or several levels."""
     return pd.Index(levels.iloc[:, 0]) if levels.shape[1] == 1 else pd.MultiIndex.from_frame(levels)
 
 
-def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:
-    """A level of rows or columns as printed."""
+def _label_level(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:
+    """Label a level of rows or columns as printed."""
     names = (
         [titles[value] for value in level]
         if level.name == "value"
@@ -289,9 +296,9 @@ def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _decimals(number: float, decimals: int, counted: bool) -> int:
-    """The given decimals, or more if a number, unless it is counted, needs them for its significant
-    digits.
+def _count_decimals(number: float, decimals: int, counted: bool) -> int:
+    """Return the given decimals, or more if a number, unless it is counted, needs them for its
+    significant digits.
     """
     if counted or not number or not np.isfinite(number):
         return decimals

@@ -17,9 +17,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.audit.rows import place
+from bezierplan.analysis.audit.rows import describe_cell
 from bezierplan.analysis.numbers import comparison, tables
-from bezierplan.analysis.results import Results, keys_of
+from bezierplan.analysis.results import Results, list_keys
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator
 
@@ -43,15 +43,15 @@ _EXACT = 1e-9
 """Numbers this near are equal."""
 
 
-def of_table(
+def compare_columns(
     results: Results, spec: Pivot, numbers: pd.DataFrame, name: str, paired: bool
 ) -> pd.DataFrame:
-    """Return level and order of all columns of means of a table.
+    """Compare level and order of all columns of means of a table with ours.
 
     numbers: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
     whether runs with equal repeat numbers start alike.
     """
-    keys = keys_of(numbers)
+    keys = list_keys(numbers)
     means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["low95_predicted", "value_ours"]).astype(
         dict.fromkeys(keys, object)
@@ -59,7 +59,7 @@ def of_table(
     rows = []
     if "method" in keys and len(means):
         cell = [*keys, "metric", "statistic"]
-        ours = tables.cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
+        ours = tables.compute_cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
         column = [key for key in cell if key not in ("method", "statistic")]
         for (*values, metric), group in means.merge(ours).groupby(column, sort=False):
             if len(group) >= LEAST:
@@ -67,16 +67,18 @@ def of_table(
                 told = [*name.split("/"), json.dumps(where), metric, len(group)]
                 same = dict(zip(COLUMNS, told))
                 together = paired or bool((group["draws"] > 1).all())
-                rng = generator(f"{name}/{place(where, where)}/{metric}/wholes")
-                rows += [same | row for row in _of(group, together, rng)]
+                rng = generator(f"{name}/{describe_cell(where, where)}/{metric}/wholes")
+                rows += [same | row for row in _compare_column(group, together, rng)]
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def experiments(
+def draw_means(
     group: pd.DataFrame, together: bool, rng: np.random.Generator
 ) -> tuple[np.ndarray, float]:
-    """The means that experiments of the paper's size print, (experiments, methods), and the tail to
-    leave out at each end. group: a row for each method, with `by_run` (`tables.cells`).
+    """Draw the means that experiments of the paper's size print, (experiments, methods), and return
+    the tail to leave out at each end.
+
+    group: a row for each method, with `by_run` (`tables.compute_cells`).
     """
     parts = group["by_run"].to_list()
     if together:
@@ -85,21 +87,23 @@ def experiments(
     means = []
     for values in (part.to_numpy().reshape(len(part), -1) for part in parts):
         sums = np.hstack([np.nan_to_num(values), ~np.isnan(values)])
-        total, share = np.split(statistics.predicted("mean", sums, size, rng), 2, axis=1)
+        total, share = np.split(statistics.draw_predictions("mean", sums, size, rng), 2, axis=1)
         with np.errstate(invalid="ignore"):  # of an experiment none of whose runs counts
             means.append(total / share)
     table = np.round(np.hstack(means), group["decimals"].iloc[0])
-    tail = statistics.expanded_tail(min(map(len, parts)))
+    tail = statistics.compute_expanded_tail(min(map(len, parts)))
     return table[~np.isnan(table).any(axis=1)], tail
 
 
-def _of(group: pd.DataFrame, together: bool, rng: np.random.Generator) -> Iterator[dict]:
-    """Yield the rows of one column."""
-    means, tail = experiments(group, together, rng)
+def _compare_column(
+    group: pd.DataFrame, together: bool, rng: np.random.Generator
+) -> Iterator[dict]:
+    """Yield the rows of one column: its level and its order."""
+    means, tail = draw_means(group, together, rng)
     every = np.vstack([group["value_published"], means])
     for quantity, (printed, *others) in (
         ("level", every.mean(axis=1)),
-        ("order", rank_correlations(every, group["value_ours"])),
+        ("order", compute_rank_correlations(every, group["value_ours"])),
     ):
         low, high = np.nanquantile(others, [tail, 1 - tail])
         yield {
@@ -107,13 +111,13 @@ def _of(group: pd.DataFrame, together: bool, rng: np.random.Generator) -> Iterat
             "printed": printed,
             "low95_predicted": low,
             "high95_predicted": high,
-            "position": comparison.position(printed, low - _EXACT, high + _EXACT),
+            "position": comparison.find_position(printed, low - _EXACT, high + _EXACT),
         }
 
 
-def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:
-    """Spearman's rank correlation of each of some rows (n, k) with a column (k,): (n,). NaN where
-    all numbers are equal.
+def compute_rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:
+    """Compute Spearman's rank correlation of each of some rows (n, k) with a column (k,): (n,). NaN
+    where all numbers are equal.
     """
     ranks = pd.DataFrame(np.vstack([column, rows])).rank(axis=1).to_numpy()
     ranks = ranks - ranks.mean(axis=1, keepdims=True)

@@ -9,11 +9,11 @@ from bezierplan.analysis import naming, words
 from bezierplan.analysis.numbers import comparison, methods
 
 
-def sentence_of_numbers(numbers: pd.DataFrame) -> str:
-    """Return for how many printed numbers our range is narrow enough to tell, and how many of these
+def describe_numbers(numbers: pd.DataFrame) -> str:
+    """Say for how many printed numbers our range is narrow enough to tell, and how many of these
     lie inside it; empty without numbers that count.
 
-    numbers: as from `summary.numbers`.
+    numbers: as from `summary.list_numbers`.
     """
     numbers = numbers[numbers["counted"].astype(bool)]
     if numbers.empty:
@@ -21,8 +21,8 @@ def sentence_of_numbers(numbers: pd.DataFrame) -> str:
     told = numbers[~numbers["wide"].astype(bool)]
     inside = int((told["position"] == "inside").sum())
     text = (
-        f"Of {naming.count(len(numbers), 'printed number')} our range is narrow enough to tell for "
-        f"{len(told)}: {inside} lie inside it, {len(told) - inside} outside."
+        f"Of {naming.format_count(len(numbers), 'printed number')} our range is narrow enough "
+        f"to tell for {len(told)}: {inside} lie inside it, {len(told) - inside} outside."
     )
     if vague := len(numbers) - len(told):
         text += f" The other {vague} would fit almost anything."
@@ -31,40 +31,43 @@ def sentence_of_numbers(numbers: pd.DataFrame) -> str:
     return text
 
 
-def sentence_of_claims(claims: pd.DataFrame) -> str:
-    """Return how many claims of the papers hold, and how many fail; empty without claims.
+def describe_claims(claims: pd.DataFrame) -> str:
+    """Say how many claims of the papers hold, and how many fail; empty without claims.
 
-    claims: as from `claims.judge`.
+    claims: as from `judge.judge_claims`.
     """
     claims = claims[claims["primary"].astype(bool) & ~claims["finding"].astype(bool)]
     if claims.empty:
         return ""
-    groups = words.groups("claim")
+    groups = words.list_groups("claim")
     counts = claims["verdict"].map(groups).value_counts().reindex([*groups.values()], fill_value=0)
     counts = counts[~counts.index.duplicated()]
     return (
-        f"Of {naming.count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} hold "
-        f"in part, {counts['fail']} fail, and {counts['open']} cannot be decided."
+        f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "
+        f"hold in part, {counts['fail']} fail, and {counts['open']} cannot be decided."
     )
 
 
-def sentence_of_methods(of_problems: pd.DataFrame) -> str:
-    """Return what the papers' methods are worth beside the exact shortest path with rounded
-    corners. of_problems: as from `methods.of_studies`.
+def describe_methods(of_problems: pd.DataFrame) -> str:
+    """Say what the papers' methods are worth beside the exact shortest path with rounded corners.
+
+    of_problems: as from `methods.measure_studies`.
     """
-    rows = methods.of_families(of_problems)
+    rows = methods.group_by_family(of_problems)
     rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
     none = int((rows["adds"] == 0).sum())
     return (
         "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{none} of {naming.count(len(rows), 'kind')} of scenarios the paper's method is nowhere "
-        "shorter than it, nor smoother than it can be."
+        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios the paper's method is "
+        "nowhere shorter than it, nor smoother than it can be."
     )
 
 
-def deviations(numbers: pd.DataFrame) -> np.ndarray:
-    """|ours - published| / |published| of numbers, infinite beside a 0. Ours are scaled to the
-    paper's number of runs. Quantities that the paper does not define say nothing.
+def compute_deviations(numbers: pd.DataFrame) -> np.ndarray:
+    """Compute |ours - published| / |published| of numbers, infinite beside a 0.
+
+    Ours are scaled to the paper's number of runs. Quantities that the paper does not define say
+    nothing, and are left out.
     """
     numbers = numbers[numbers["reason"] != comparison.UNDEFINED]
     published, ours = (

@@ -36,8 +36,10 @@ _RULES = (
 
 
 class FileList(NamedTuple):
-    """What the list of a scale says: the digests of files, by name; the account of the job that
-    made each; and versions of libraries. fault: empty, or what is wrong with the list.
+    """The content of the list of a scale.
+
+    digests: of files, by name. accounts: of the job that made each. versions: of libraries. fault:
+    empty, or the line that says what is wrong with the list.
     """
 
     digests: dict[str, str]
@@ -46,8 +48,8 @@ class FileList(NamedTuple):
     fault: str = ""
 
 
-def listed(folder: Path) -> FileList:
-    """Return what the list of a scale says; nothing if it is none."""
+def read_list(folder: Path) -> FileList:
+    """Read the list of a scale; empty if there is none, or none that can be read."""
     file, page = folder / LIST, folder / PAGE
     text = page.read_text(encoding="utf-8") if page.is_file() else ""
     if not file.is_file():
@@ -63,8 +65,8 @@ def listed(folder: Path) -> FileList:
     return found
 
 
-def unlisted(folder: Path, file_list: FileList) -> list[Difference]:
-    """Return the files of a scale that are not what its list says; the list, if it is wrong."""
+def find_changed_files(folder: Path, file_list: FileList) -> list[Difference]:
+    """Find the files of a scale that are not what its list says; the list alone, if it is wrong."""
     if file_list.fault:
         return [Difference(str(folder / LIST), file_list.fault)]
     now = {name: compute_sha256(folder / name) for name in file_list.digests}
@@ -75,8 +77,8 @@ def unlisted(folder: Path, file_list: FileList) -> list[Difference]:
     ]
 
 
-def made_by() -> str:
-    """Return the version of this package, and of a clone the commit with its date."""
+def describe_version() -> str:
+    """Describe the version of this package, in a clone with the commit and its date."""
     version = f"bezierplan {bezierplan.__version__}"
     if not (TREE / ".git").exists():
         return version
@@ -88,23 +90,25 @@ def made_by() -> str:
     return f"{version}, commit {found.stdout.strip()}"
 
 
-def narrowed(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
-    """Return a configuration of some studies alone, given by name or folder."""
+def select_studies(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
+    """Return a configuration with some of its studies alone, given by name or folder."""
     names = {Path(study).resolve().name for study in studies}
     settings = {name: each for name, each in config.get("settings", {}).items() if name in names}
     return config | {"studies": studies, "settings": settings}
 
 
-def differing(
+def find_differences(
     folder: Path,
     made: Mapping[str, bool],
     config: dict[str, Any],
     file_list: Collection[str],
     processes: int,
 ) -> tuple[int, list[Difference]]:
-    """Return how many files follow from studies and runs, and which of them are others if they are
-    made again, or cannot be. made: the files of a scale, and whether they do. config: with its
-    studies. file_list: files of its list, to whose studies belongs what lies above all of them.
+    """Make again all files that follow from studies and runs; return how many they are, and which
+    of them are others, or cannot be made.
+
+    made: the files of a scale, and whether they follow. config: with its studies. file_list: files
+    of its list, to whose studies belongs what lies above all of them.
     """
     places = {Path(study).resolve().name: study for study in config["studies"]}
     known = {name.split("/")[0] for name in file_list}
@@ -123,10 +127,10 @@ def differing(
                 for name in files
                 if (name.split("/")[0] if "/" in name else shown[0]) in group
             ]
-            studies = narrowed(config, [places[key] for key in group])
+            studies = select_studies(config, [places[key] for key in group])
             faults += [
                 Difference(line, "what follows cannot be made again")
-                for line in _make(own, studies, away, processes)
+                for line in _make_again(own, studies, away, processes)
             ]
         faults += [
             Difference(str(folder / name), "made again, it is another one")
@@ -137,7 +141,7 @@ def differing(
     return len(files), faults
 
 
-def _make(files: list[Path], config: dict[str, Any], away: str, processes: int) -> list[str]:
+def _make_again(files: list[Path], config: dict[str, Any], away: str, processes: int) -> list[str]:
     """Make files below a folder again, which follow from the studies of a configuration, and return
     what went wrong.
     """

@@ -11,29 +11,33 @@ from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.numbers import comparison
 
 
-def gathered(
+def gather(
     comparison_files: Mapping[tuple[str, str], str],
     wholes_files: list[str],
     claims_files: list[str],
 ) -> dict[str, pd.DataFrame]:
-    """All studies together by name: `numbers`, `claims`, and `wholes`, columns of numbers.
+    """Gather the tables of all studies by name: `numbers`, `claims`, and `wholes`, columns of
+    numbers.
+
     comparison_files: by study and table. wholes_files: of the same tables. claims_files: of the
     studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
     none = pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
     return {
-        "numbers": numbers({name: pd.read_csv(file) for name, file in comparison_files.items()}),
+        "numbers": list_numbers(
+            {name: pd.read_csv(file) for name, file in comparison_files.items()}
+        ),
         "claims": pd.concat(claims, ignore_index=True) if claims else none,
         "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
     }
 
 
-def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
-    """Every row of comparisons that has a published number, in their order.
+def list_numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
+    """List every row of comparisons that has a published number, in their order.
 
     comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted
-    (the row is primary, has a range, and adds information: `_counted`), then the others of the
+    (the row is primary, has a range, and adds information: `_is_counted`), then the others of the
     comparisons, key columns first.
     """
     frames = [
@@ -46,14 +50,16 @@ def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     first = ["study", "table", "primary"]
     last = everything.columns[everything.columns.get_loc("metric") :].difference(first, sort=False)
     keys = list(everything.columns.difference([*first, *last], sort=False))
-    everything["counted"] = _counted(everything, keys)
+    everything["counted"] = _is_counted(everything, keys)
     return everything[[*first, "counted", *keys, *last]]
 
 
-def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Which rows (n,) count in the denominator: those that are primary and have a range, but
-    numbers that are impossible on any map, repetitions of a number in another table, and the
-    last of several counts that add up to the number of runs.
+def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
+    """Return which rows (n,) count in the denominator.
+
+    They are primary and have a range. Left out are numbers that are impossible on any map,
+    repetitions of a number in another table, and the last of several counts that add up to the
+    number of runs.
     """
     # A length below the bound is impossible on our map alone.
     of_map = (
@@ -66,7 +72,7 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         listed = list(rows.iterrows())
         for (_, earlier), (index, row) in itertools.combinations(listed, 2):
-            if earlier["table"] != row["table"] and _same_place(earlier, row, keys):
+            if earlier["table"] != row["table"] and _is_same_place(earlier, row, keys):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
@@ -76,8 +82,8 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     return counted
 
 
-def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
-    """Whether two rows have the same key columns as far as both have them."""
+def _is_same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
+    """Return whether two rows have the same key columns as far as both have them."""
     return all(
         one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key]))
     )

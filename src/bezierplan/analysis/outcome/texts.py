@@ -31,7 +31,7 @@ _VALUE = re.compile(r"\{(\w+)(?:\.(low|high|holds|rows))?\}")
 
 
 class Fact(Model):
-    """What must hold in some rows of a table of the outcome, all of the study."""
+    """A comparison that must hold in some rows of a table of the outcome, all of the study."""
 
     of: Literal[TABLES]
     where: dict[str, Any] = Field({}, description="column: value, or values; left out: all rows")
@@ -56,7 +56,7 @@ class Fact(Model):
 
 
 class Text(Model):
-    """The answer to a paper."""
+    """The answer to a paper: a title, a short text, and the facts under it."""
 
     title: str = Field(description="at most eight words that answer")
     text: str = Field(
@@ -66,7 +66,7 @@ class Text(Model):
 
 
 class FilledText(NamedTuple):
-    """A title and a text whose numbers are filled in, and what is wrong with its facts."""
+    """A title and a text whose numbers are filled in, and the faults of its facts."""
 
     title: str
     text: str
@@ -94,13 +94,14 @@ def fill(text: Text, tables: Mapping[str, pd.DataFrame]) -> FilledText:
         typed = _TYPED.findall(_VALUE.sub("", written))
         faults += [f"{name}: {number} is typed; expected a fact in braces" for number in typed]
 
-    def value(braces: re.Match) -> str:
+    def fill_value(braces: re.Match) -> str:
+        """Return the text of a fact that stands in braces."""
         known = values.get(braces[1], {})
         if (part := braces[2] or "value") not in known:
             faults.append(f"text: {braces[0]}: expected a fact that has it")
         return known.get(part, braces[0])
 
-    shown = " ".join(_VALUE.sub(value, text.text).split())
+    shown = " ".join(_VALUE.sub(fill_value, text.text).split())
     return FilledText(text.title, shown, faults)
 
 
@@ -153,7 +154,7 @@ def _show(fact: Fact, values: pd.Series, true: pd.Series) -> dict[str, str]:
     if len(values) and pd.api.types.is_numeric_dtype(values):
         numbers = values.astype(float) * (100 if fact.percent else 1)
         ends = {"low": numbers.min(), "high": numbers.max()}
-        shown |= {name: naming.number(end, fact.digits) for name, end in ends.items()}
+        shown |= {name: naming.format_number(end, fact.digits) for name, end in ends.items()}
         shown |= {"value": shown["low"]} if len(values) == 1 else {}
     return shown
 

@@ -14,10 +14,10 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.analysis import naming, words
-from bezierplan.analysis.claims.sentences import meaning
+from bezierplan.analysis.claims.sentences import describe_metric
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
-from bezierplan.analysis.outcome.proof import made_by
+from bezierplan.analysis.outcome.proof import describe_version
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.running.inputs import Files
@@ -63,7 +63,7 @@ def page(
     return SimpleNamespace(
         scale=job.scale,
         about_scale=answer.about_scale(job.scale, repeats, bool(evidence)),
-        made_by=verified["made_by"] if verified else made_by(),
+        made_by=verified["made_by"] if verified else describe_version(),
         headline=_headline(_replace(tables, evidence, job.outcome), job.studies),
         verified=verified,
         studies=studies,
@@ -116,7 +116,7 @@ def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
     if not tables:
         return []
     numbers, claims = (table[table["study"].isin([*studies])] for table in tables[:2])
-    said = (headline.sentence_of_numbers(numbers), headline.sentence_of_claims(claims))
+    said = (headline.describe_numbers(numbers), headline.describe_claims(claims))
     return [*filter(None, said)]
 
 
@@ -147,11 +147,11 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     environment.filters |= {
         "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
         "short": short,
-        "heading": naming.heading,
-        "amount": naming.amount,
+        "heading": naming.format_heading,
+        "amount": naming.format_amount,
         "counts": counts,
         "positions": positions,
-        "range_text": comparison.range_text,
+        "range_text": comparison.format_range,
         "packed": packed,
         "failing": answer.failing,
         "labelled": labelled,
@@ -165,11 +165,11 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "grid": grid,
         "marks": MARKS,
         "root": "",  # before the paths of files of results
-        "meaning": lambda metric: meaning(metric or ""),
+        "meaning": lambda metric: describe_metric(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
-        "verdicts_on": words.on,
+        "verdicts_on": words.select_words,
         "words": words.WORDS,
     }
     return environment
@@ -192,7 +192,7 @@ def short(value: Any, digits: int = 4) -> str:
     """A value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
-    return naming.number(value, digits) if isinstance(value, float) else str(value)
+    return naming.format_number(value, digits) if isinstance(value, float) else str(value)
 
 
 def labelled(text: Any, labels: dict[str, str]) -> str:

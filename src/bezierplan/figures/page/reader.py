@@ -99,8 +99,8 @@ def _families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame
     """Return the methods of a study on each family of its problems, as words; None without."""
     if of_problems.empty:
         return None
-    rows = methods.of_families(of_problems)
-    return methods.laid_out(rows, labels) if len(rows) else None
+    rows = methods.group_by_family(of_problems)
+    return methods.format_table(rows, labels) if len(rows) else None
 
 
 def _method(study: str, name: str, method: Any) -> Row:
@@ -167,7 +167,7 @@ def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
         head = [_heading(row["metric"], "mean", spec, labels)]
         for key, value in json.loads(row["place"]).items():
             if value != spec.primary.get(key):
-                head.append(naming.printed(value, key, labels))
+                head.append(naming.format_value(value, key, labels))
         low, high = (f"{row[end]:.2g}" for end in ("low95_predicted", "high95_predicted"))
         if row["quantity"] == "level":
             what = f"level {row['position']} ours ({row['printed']:.3g}; ours {low} to {high})"
@@ -209,7 +209,7 @@ def _numbers(
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
     published = comparison["value_published"].notna()
-    # `summary.numbers` keeps the order of a table's rows.
+    # `summary.list_numbers` keeps the order of a table's rows.
     comparison["counted"] = False
     if len(counted):
         comparison.loc[published, "counted"] = counted["counted"].to_numpy()
@@ -247,7 +247,7 @@ def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:
     """The value of a key column as printed; a number is named."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
-    return naming.printed(value, column, labels)
+    return naming.format_value(value, column, labels)
 
 
 def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
@@ -258,7 +258,7 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
     for value in spec.values:
         if value.metric == metric and beside & set(value.statistics):
             return value.label + (f": {statistic}" if len(value.statistics) > 1 else "")
-    return f"{naming.column_name(metric, labels)}: {statistic}"
+    return f"{naming.name_column(metric, labels)}: {statistic}"
 
 
 def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
@@ -268,7 +268,7 @@ def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> l
     compared: dict[tuple, list[Row]] = {}
     for row in records(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
-    names = sentences.variants_named([*content.claims.values()], content.labels)
+    names = sentences.name_variants([*content.claims.values()], content.labels)
     claims: dict[str, Row] = {}
     others: dict[str, list[Row]] = {}
     for row in records(files["claims"]):
@@ -288,12 +288,12 @@ def _claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -
     checks = described.checks if described else []
     for row in comparisons:
         check = checks[row["check"] - 1] if row["check"] <= len(checks) else None
-        row["reference"] = sentences.reference(check) if check else 0.0
-        row["name"] = sentences.title(row, check, content.labels)
+        row["reference"] = sentences.find_threshold(check) if check else 0.0
+        row["name"] = sentences.name_comparison(row, check, content.labels)
     there = content.tables.keys() | content.figures.keys()
     return claim | {
         "address": address(study, claim["id"]),
-        "rule": sentences.rule(described, claim["verdict"], claim["holds"]),
+        "rule": sentences.describe_count(described, claim["verdict"], claim["holds"]),
         "why": _why(claim, comparisons, checks, content.labels),
         "comparisons": comparisons,
         "shown_in": [name for name in (claim["artefact"] or "").split(", ") if name in there],
@@ -307,7 +307,9 @@ def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str
     row = next((each for each in comparisons if each["decisive"]), None)
     if row is None or row["check"] > len(checks):
         return ""
-    return sentences.why(row, checks[row["check"] - 1], labels, bool(claim["own_criterion"]))
+    return sentences.explain_verdict(
+        row, checks[row["check"] - 1], labels, bool(claim["own_criterion"])
+    )
 
 
 def _assumption(study: str, row: Row, labels: dict[str, str]) -> Row:

@@ -212,7 +212,7 @@ def _run(row: Row, bounds: Bounds, problem: str) -> Row:
     """A run, its points rounded to what a picture shows. claimed: the planner's own verdict."""
     from bezierplan.figures.panels.paths import steps
 
-    path, size = results.path_of(row), _size(bounds)
+    path, size = results.build_path(row), _size(bounds)
     collides = path is not None and not row["feasible"] and np.isfinite(row["collision_at"])
     return {
         "problem": problem,

@@ -49,11 +49,11 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     """
     import pandas as pd
 
-    from bezierplan.analysis.results import path_of
+    from bezierplan.analysis.results import build_path
 
     run, names = picked(results, options.pick)
     names |= {"quantity": options.quantity, "limit": options.limit}
-    path = None if run is None else path_of(run)
+    path = None if run is None else build_path(run)
     if path is None:
         return pd.DataFrame([names | {"pieces": 0, "t": math.nan, "value": math.nan}])
     names["pieces"] = len(curves.bezier_pieces(path))

@@ -133,7 +133,7 @@ def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
 
 def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
     """Return what the axis of the effect shows."""
-    metric = naming.column_name(row["metric"], scene.labels)
+    metric = naming.name_column(row["metric"], scene.labels)
     if is_share:
         return f"share of runs: {metric}"
     unit = "share of the other" if row["scale"] == "relative" else row["unit"]

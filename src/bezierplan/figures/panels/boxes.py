@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import naming
-from bezierplan.analysis.naming import amount
+from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
@@ -119,9 +119,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         if part in LIMITS:
             axes.axhline(own.iloc[0], zorder=1.5, **LIMITS[part])
     if options.limit is not None:
-        label = f"published limit: {amount(format(options.limit, 'g'), scene.unit)}"
+        label = f"published limit: {format_amount(format(options.limit, 'g'), scene.unit)}"
         axes.axhline(options.limit, zorder=1.5, label=label, **style.PUBLISHED)
-    names = [naming.printed(group, by, scene.labels) for group in order]
+    names = [naming.format_value(group, by, scene.labels) for group in order]
     style.name_places(axes, names, axis_label(by, scene))
     show_metric(axes, options.metric, scene, scale=options.scale)
     where = "method" if by == "method" else "place"

@@ -143,7 +143,7 @@ def _of_group(group: Results, options: Options, generations: int) -> Iterable[di
     ends = np.nan, np.nan
     for number, column in enumerate(histories.T):
         if number == 0 or not np.array_equal(column, histories[:, number - 1]):
-            ends = statistics.interval(statistic, column, generator(name))
+            ends = statistics.compute_interval(statistic, column, generator(name))
         last = theirs and number == generations - 1
         yield {
             "generation": number,
@@ -168,7 +168,7 @@ def _histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel(naming.column_name("generation", scene.labels))
+    axes.set_xlabel(naming.name_column("generation", scene.labels))
     axes.grid(visible=True)
     for name, look in LIMITS.items():
         if options.context and np.isfinite(frame[name].iloc[0]):

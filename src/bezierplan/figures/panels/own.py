@@ -31,7 +31,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.analysis import metrics
 
     runs = results.runs.sort_values("id")
-    values = {name: metrics.values(runs, name, results.problems) for name in options.metrics}
+    values = {
+        name: metrics.compute_values(runs, name, results.problems) for name in options.metrics
+    }
     return (
         runs[["method", "problem", "condition", "repeat"]].assign(**values).reset_index(drop=True)
     )

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
-from bezierplan.analysis.naming import amount
+from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import axis_label, counts, published
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, exactly_one, only
@@ -92,7 +92,7 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     runs = results.runs
     names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
     if pick.having is not None:
-        runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
+        runs = runs[metrics.compute_values(runs, pick.having, results.problems) > 0]
     run = pick_run(runs, pick.plain("having", "layout"))
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
@@ -210,7 +210,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     """
     import pandas as pd
 
-    from bezierplan.analysis.results import path_of
+    from bezierplan.analysis.results import build_path
 
     if options.explicit is not None:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
@@ -224,7 +224,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             data(results._replace(runs=runs), alone).assign(**{options.hue: value})
             for value, runs in groups
         ]
-        numbers = metrics.values(results.runs, options.measure, results.problems)
+        numbers = metrics.compute_values(results.runs, options.measure, results.problems)
         by_run = numbers.groupby(results.runs["id"]).first()
         frame = pd.concat(frames, ignore_index=True)
         return frame.assign(measure=frame["run"].map(by_run))
@@ -242,7 +242,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if options.printed is not None and results.published is not None:
         printed = published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
-    path = None if run is None else path_of(run)
+    path = None if run is None else build_path(run)
     if path is not None:
         if options.context:
             places["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
@@ -338,5 +338,7 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
         clauses = [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
     clauses.append(feasible_note(frame))
     if np.isfinite(row.get("printed", np.nan)):
-        clauses.append(f"shortest printed {amount(format(row['printed'], '.2f'), unit)}")
-    return Note(f"length {amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses))
+        clauses.append(f"shortest printed {format_amount(format(row['printed'], '.2f'), unit)}")
+    return Note(
+        f"length {format_amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses)
+    )

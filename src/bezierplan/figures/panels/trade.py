@@ -81,7 +81,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     of_bend = options.x == "bend"
     runs = runs.assign(
         x=_bends(runs) if of_bend else runs["cpu_s"],
-        y=metrics.values(runs, "gap", results.problems),
+        y=metrics.compute_values(runs, "gap", results.problems),
     )
     bounds = runs.groupby("problem")["bound"].first()
     lines = _lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
@@ -128,11 +128,11 @@ def adds(line: np.ndarray, bend: float, excess: float, often: float) -> bool:
 
 def _bends(runs: pd.DataFrame) -> np.ndarray:
     """Return the largest curvature (n,) of each free path, infinite with corners, NaN of others."""
-    from bezierplan.analysis.results import path_of
+    from bezierplan.analysis.results import build_path
     from bezierplan.geometry.tightest_turn import largest_curvature
 
-    cornered = metrics.values(runs, "corners", {}) > 0
-    paths = map(path_of, runs[["path_curve", "path_points"]].to_dict("records"))
+    cornered = metrics.compute_values(runs, "corners", {}) > 0
+    paths = map(build_path, runs[["path_curve", "path_points"]].to_dict("records"))
     return np.array(
         [
             math.nan if not free else math.inf if sharp else largest_curvature(path)
@@ -184,10 +184,10 @@ def _middle(points: np.ndarray, name: str) -> dict[str, float]:
     middle_of = {}
     for axis, values in zip("xy", (bounded if len(bounded) else points).T):
         numbers = np.sort(values[~np.isnan(values)])
-        middle = middle_of[axis] = statistics.statistic("median", numbers)
+        middle = middle_of[axis] = statistics.compute_statistic("median", numbers)
         ends = middle, middle
         if len(numbers) > 1 and math.isfinite(middle):
-            ends = statistics.interval("median", numbers, generator(f"trade/{name}/{axis}"))
+            ends = statistics.compute_interval("median", numbers, generator(f"trade/{name}/{axis}"))
         middle_of[f"{axis}_low"], middle_of[f"{axis}_high"] = ends
     return middle_of
 
@@ -280,5 +280,5 @@ def _note(table: pd.DataFrame, scene: Any) -> Note:
 
 
 def _listed(methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")) -> str:
-    printed = (naming.printed(method, "method", scene.labels) for method in methods)
+    printed = (naming.format_value(method, "method", scene.labels) for method in methods)
     return ", ".join(name + beside for name, beside in zip(printed, more))

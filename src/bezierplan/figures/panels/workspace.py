@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis.naming import amount
+from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.schema.model import Flag, Line
@@ -205,7 +205,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         return Note()
     axes.set(xticks=[], yticks=[])
     side = f"{numbered['size'].iloc[0]:g}"
-    return Note("" if (side, unit) == ("1", "cell") else f"cells of {side} x {amount(side, unit)}")
+    return Note(
+        "" if (side, unit) == ("1", "cell") else f"cells of {side} x {format_amount(side, unit)}"
+    )
 
 
 def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:

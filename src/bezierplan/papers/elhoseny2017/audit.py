@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import checked, compared
+from bezierplan.analysis.audit.rows import build_row, compare_with_limit
 from bezierplan.papers.elhoseny2017.functions import count_pairs, read_solutions, read_text_values
 from bezierplan.planners.parts.diversity import compute_q_statistic
 
@@ -22,7 +22,7 @@ def audit(published: "Published") -> list[dict]:
     example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
     any mutation leaves the subspace of a crossover.
     """
-    parts = (rules.audit, _audit_example, _audit_text)
+    parts = (rules.check_rules, _audit_example, _audit_text)
     return [row for part in parts for row in part(published)]
 
 
@@ -32,12 +32,12 @@ def _audit_example(published: "Published") -> Iterator[dict]:
     in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
     rule = "the text counts as it defines"
     for name, counted in count_pairs(genes["S1"], genes["S2"]).items():
-        yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
+        yield compare_with_limit("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
     rule, q = (
         "Q of the counts in the text is the printed one",
         compute_q_statistic(*in_text.values()),
     )
-    yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
+    yield compare_with_limit("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:
@@ -47,23 +47,23 @@ def _audit_text(published: "Published") -> Iterator[dict]:
     # Eta decays by a factor, which the text calls linear.
     last = eta * decay**iterations
     rule = f"eta decreases to 0 over the {iterations} iterations"
-    yield checked("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
+    yield build_row("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
     half = eta * (1 - decay ** (iterations // 2)) / (eta - last)
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    yield checked("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
+    yield build_row("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
     rule = (
         "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
         "most eta: eta after an iteration"
     )
-    yield compared("text", "3.3", rule, eta * decay, ">=", eta)
+    yield compare_with_limit("text", "3.3", rule, eta * decay, ">=", eta)
     # A crossover keeps the digits that both parents have.
     digits, shared = int(printed["digits of A"]), int(printed["digits of A that B has too"])
     rule = (
         "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits "
         "of which that is true"
     )
-    yield compared("text", "2.2.2", rule, digits, "==", shared)
+    yield compare_with_limit("text", "2.2.2", rule, digits, "==", shared)
     # A table of drives would say how fast the obstacles are.
     drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
     rule = "the title speaks of a dynamic field: some table has obstacles that move"
-    yield compared("text", "title", rule, drives, ">=", 1)
+    yield compare_with_limit("text", "title", rule, drives, ">=", 1)

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.results import select
-from bezierplan.analysis.statistics import interval
+from bezierplan.analysis.statistics import compute_interval
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.planners.parts.diversity import compute_q_statistic
 from bezierplan.workspaces.seeds import generator
@@ -107,7 +107,7 @@ def fluctuation(
     fields = []
     for name in check.experiments:
         values = select(results[name].runs, check.where)[check.metric].dropna().to_numpy()
-        ends = interval("std", values, generator(f"elhoseny2017/C10/{check.metric}/{name}"))
+        ends = compute_interval("std", values, generator(f"elhoseny2017/C10/{check.metric}/{name}"))
         fields.append(np.array([values.std(), *ends]) / values.mean())
     effect, low, high = map(float, max(fields, key=max))
     mark = "+" if 0 < high <= most else "-" if low > most or high == 0 else "?"
@@ -125,7 +125,7 @@ def endless_loops(
     runs = select(results[check.experiments[0]].runs, check.where)
     # A run that never enters the loop says nothing about how it ends.
     shares = (runs["endless_loops"] / runs["loops"]).dropna().to_numpy()
-    low, high = map(float, interval("mean", shares, generator("elhoseny2017/C33")))
+    low, high = map(float, compute_interval("mean", shares, generator("elhoseny2017/C33")))
     mark = "+" if low >= least else "-" if high < least else "?"
     return mark, float(shares.mean()), (low, high), len(shares)
 

@@ -7,8 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis.measures import free_cells, headings, held_history, samples_of
-from bezierplan.analysis.metric import Metric, count, metric, of_path, on_maps, register
+from bezierplan.analysis.measures import (
+    compute_heading_changes,
+    count_free_cells,
+    extend_histories,
+    sample_path,
+)
+from bezierplan.analysis.metric import (
+    Metric,
+    build_count,
+    measure_on_maps,
+    metric,
+    of_path,
+    register,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +43,7 @@ def _cut_into_equal_parts(path: Path) -> tuple[np.ndarray, float]:
     points = path.points
     if path.curve != "polyline":
         count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
-        points = samples_of(path, count)
+        points = sample_path(path, count)
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     # Two parts at least, or there would be no change of heading.
     parts = max(2, round(at[-1] / BENDING_PART))
@@ -51,13 +63,15 @@ def bending(path: Path) -> float:
     rad²/unit.
     """
     steps, length = _cut_into_equal_parts(path)
-    return float((headings(steps) ** 2).sum() / length) if length else 0.0
+    return float((compute_heading_changes(steps) ** 2).sum() / length) if length else 0.0
 
 
 @of_path("degrees", f"largest change of heading between parts of {BENDING_PART:g} u")
 def max_turn(path: Path) -> float:
     """Return the largest change of heading between parts of about `BENDING_PART`, in degrees."""
-    return float(np.degrees(headings(_cut_into_equal_parts(path)[0]).max(initial=0.0)))
+    return float(
+        np.degrees(compute_heading_changes(_cut_into_equal_parts(path)[0]).max(initial=0.0))
+    )
 
 
 @metric(
@@ -75,7 +89,7 @@ def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Ser
     blocked = {}
     for name in runs["problem"].unique():
         line = Path("polyline", np.array([problems[name].start, problems[name].target]))
-        blocked[name] = free_cells(line, problems[name].workspace) is None
+        blocked[name] = count_free_cells(line, problems[name].workspace) is None
     return runs["problem"].map(blocked)
 
 
@@ -90,8 +104,8 @@ def measure_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]
     from bezierplan.geometry import cell_length
 
     count = getattr(cell_length, name)
-    lengths = on_maps(
-        lambda path, grid: np.nan if free_cells(path, grid) is None else count(path, grid),
+    lengths = measure_on_maps(
+        lambda path, grid: np.nan if count_free_cells(path, grid) is None else count(path, grid),
         runs,
         problems,
     )
@@ -118,7 +132,7 @@ register(
         "history_mean": Metric(
             "u",
             "mean over the generations of the best objective so far",
-            lambda runs, _: held_history(runs).mean(axis=1),
+            lambda runs, _: extend_histories(runs).mean(axis=1),
         ),
         "distinct_chromosomes": Metric(
             "-", "different chromosomes in the population, mean over the generations"
@@ -126,8 +140,10 @@ register(
         "population_q": Metric(
             "-", "mean Q statistic of the surviving population, mean over the generations"
         ),
-        "loops": count("iterations whose offspring are so alike that more are made"),
-        "endless_loops": count("iterations that make as many batches of offspring as they may"),
+        "loops": build_count("iterations whose offspring are so alike that more are made"),
+        "endless_loops": build_count(
+            "iterations that make as many batches of offspring as they may"
+        ),
     }
 )
 

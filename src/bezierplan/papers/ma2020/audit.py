@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import checked, compared
+from bezierplan.analysis.audit.rows import build_row, compare_with_limit
 from bezierplan.geometry import curves
 from bezierplan.papers.ma2020.functions import read_side_of_maps
 
@@ -22,7 +22,7 @@ def audit(published: "Published") -> list[dict]:
     Statements in the text about lengths and times are checked against the tables, the one about the
     parameter of a curve and equation (11) by computing.
     """
-    return [*rules.audit(published), *_audit_text(published)]
+    return [*rules.check_rules(published), *_audit_text(published)]
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:
@@ -35,14 +35,14 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         cells = share * parameters[workspace, "grid_size"] ** 2
         whole = round(cells)
         location = f"workspace={workspace}"
-        yield checked("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
+        yield build_row("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
     rule = (
         "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
     )
     inside = int((heights < side).sum())
-    yield compared("text", "3.2, equation (11)", rule, inside, "==", side * side)
+    yield compare_with_limit("text", "3.2, equation (11)", rule, inside, "==", side * side)
     # By equation (13) the fitness of a free path is its length, and by equation (15) its chance of
     # being selected grows with that.
     rule = (
@@ -50,7 +50,7 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         "of one along two sides of the map"
     )
     shorter, longer = side * math.sqrt(2), 2.0 * side
-    yield compared("text", "3.3, equations (12) and (15)", rule, shorter, ">", longer)
+    yield compare_with_limit("text", "3.3, equations (12) and (15)", rule, shorter, ">", longer)
     # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
     text = published["text_values"].set_index("quantity")["value"]
     quarter = float(text["t of a quarter of the path"])
@@ -60,9 +60,9 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         "with control points at 0, 0 and 1"
     )
     location = "2, equation (1)"
-    yield checked("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
+    yield build_row("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"
     )
-    yield compared("text", "Data Availability", rule, listed, ">=", 1)
+    yield compare_with_limit("text", "Data Availability", rule, listed, ">=", 1)

@@ -57,7 +57,9 @@ def excess_of_corners(
     """
     experiment = results[check.experiment]
     runs = select(experiment.runs, check.where)
-    saved = runs["length"] - metrics.values(runs, "length_without_spares", experiment.problems)
+    saved = runs["length"] - metrics.compute_values(
+        runs, "length_without_spares", experiment.problems
+    )
     means = runs.assign(saved=saved).groupby("method")[["length", "saved"]].mean()
     others = means.drop(beside)
     share = float((others["saved"] / (others["length"] - means.loc[beside, "length"])).min())

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis.measures import CORNER, headings, path_headings
-from bezierplan.analysis.metric import metric, of_path, of_paths, on_map
+from bezierplan.analysis.measures import CORNER, compute_heading_changes, measure_heading_changes
+from bezierplan.analysis.metric import measure_paths, metric, of_path, on_map
 from bezierplan.workspaces.grid import Grid
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @of_path("rad", "largest change of heading between neighbouring chords")
 def heading_max(path: Path) -> float:
     """Return the largest change of heading between neighbouring chords, in radians."""
-    return float(path_headings(path).max(initial=0.0))
+    return float(measure_heading_changes(path).max(initial=0.0))
 
 
 @on_map(
@@ -60,7 +60,7 @@ def _list_turns(path: Path) -> np.ndarray:
     """List the ends and corners (n, 2) of a polyline."""
     steps = np.diff(path.points, axis=0)
     moved = np.hypot(*steps.T) > 0
-    places, turned = path.points[1:][moved], headings(steps[moved])
+    places, turned = path.points[1:][moved], compute_heading_changes(steps[moved])
     return np.concatenate([path.points[:1], places[:-1][turned > CORNER], places[-1:]])
 
 
@@ -97,7 +97,7 @@ def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list
     """Return the least distance (n,) from a path in a grid to its occupied cells; infinite without
     any.
     """
-    return of_paths(
+    return measure_paths(
         [_prepare_clearance(problems[name].workspace) for name in runs["problem"]], runs
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import checked, compared
+from bezierplan.analysis.audit.rows import build_row, compare_with_limit
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
@@ -41,7 +41,7 @@ def audit(published: "Published") -> list[dict]:
     operators = list(published["table2"]["method"].unique())
     others = [method for method in operators if method != "proposed"]
     said = list(published["said"].itertuples())
-    rows = rules.audit(published)
+    rows = rules.check_rules(published)
     for sentence in said:
         if sentence.quantity in TESTED:
             rows += _test_by_fisher(
@@ -57,14 +57,14 @@ def audit(published: "Published") -> list[dict]:
                 for one, other in pairs
             )
             rule = f"pairs of operators that rank by {words} as in Table 2 (Section 4): all"
-            rows.append(compared(name, f"metric={metric}", rule, agree, "==", len(pairs)))
+            rows.append(compare_with_limit(name, f"metric={metric}", rule, agree, "==", len(pairs)))
     # A table of drives would say when the environment changes.
     drives = sum(not {"after", "moment"}.isdisjoint(table) for table in published.values())
     rule = (
         "the title speaks of dynamic environments: some table has drives during which the "
         "environment changes"
     )
-    return [*rows, compared("text", "title", rule, drives, ">=", 1)]
+    return [*rows, compare_with_limit("text", "title", rule, drives, ">=", 1)]
 
 
 def _test_by_fisher(
@@ -92,7 +92,7 @@ def _test_by_fisher(
         "Holm"
     )
     return [
-        checked(
+        build_row(
             name,
             f"metric={metric}, proposed and {other}",
             rule,
@@ -133,7 +133,7 @@ def _test_all_maps(
         f"over all maps the proposed mutation has as often the {words} as ref12, but for chance: p "
         "of the test of Cochran, Mantel and Haenszel"
     )
-    return checked(
+    return build_row(
         ", ".join(tables), f"metric={metric}, all maps", rule, p, ALPHA, bool(p >= ALPHA), told
     )
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from bezierplan.analysis.measures import held_history
-from bezierplan.analysis.metric import Metric, count, register
+from bezierplan.analysis.measures import extend_histories
+from bezierplan.analysis.metric import Metric, build_count, register
 
 register(
     {
         "objective_best": Metric(
             "u",
             "lowest objective of any generation",
-            lambda runs, _: held_history(runs).min(axis=1),
+            lambda runs, _: extend_histories(runs).min(axis=1),
         ),
-        "near_optimal": count(
+        "near_optimal": build_count(
             "whether the final path is feasible but not optimal, by the planner's own test"
         ),
         "feasible_last": Metric("-", "share of feasible paths in the last population"),

@@ -9,12 +9,19 @@ import numpy as np
 
 from bezierplan.analysis.measures import (
     CURVATURE_SAMPLES,
-    curvature_samples,
-    first_generation_within,
-    free_cells,
-    held_history,
+    count_free_cells,
+    extend_histories,
+    find_first_generation,
+    sample_curvature,
 )
-from bezierplan.analysis.metric import generation, metric, of_path, on_map, on_maps, register
+from bezierplan.analysis.metric import (
+    build_generation,
+    measure_on_maps,
+    metric,
+    of_path,
+    on_map,
+    register,
+)
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 
 if TYPE_CHECKING:
@@ -44,7 +51,7 @@ def signed_curvature(path: Path) -> float:
 
     Left turns are positive (song2016, eq. 5); the curvature counts as 0 where the speed is zero.
     """
-    return float(np.nan_to_num(curvature_samples(path)).max())
+    return float(np.nan_to_num(sample_curvature(path)).max())
 
 
 @of_path("-", "control points that differ from each other", feasible_only=False, step=1.0)
@@ -72,7 +79,9 @@ def occupied_points(path: Path, grid: Grid) -> int:
 def free_polygon(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Tell which runs (n,) have a free path whose control polygon touches no occupied cell."""
     polygons = runs.assign(path_curve=np.where(runs["path_curve"] == "", "", "polyline"))
-    free = on_maps(lambda path, grid: free_cells(path, grid) is not None, polygons, problems)
+    free = measure_on_maps(
+        lambda path, grid: count_free_cells(path, grid) is not None, polygons, problems
+    )
     return runs["feasible"].to_numpy() & (np.array(free) == 1)
 
 
@@ -88,17 +97,17 @@ def find_generation_improved_by(
     """Return the first generation (n,) by which a share of the improvement from generation 0 to the
     last is made; 0 if there is none.
     """
-    held = held_history(runs)
+    held = extend_histories(runs)
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
 
 
 register(
     {
-        "generation_5pct": generation(
+        "generation_5pct": build_generation(
             "first generation within 5 % of the run's final objective",
-            partial(first_generation_within, 0.05),
+            partial(find_first_generation, 0.05),
         ),
-        "generation_90pct_improved": generation(
+        "generation_90pct_improved": build_generation(
             "first generation by which nine tenths of the run's improvement of the objective are "
             "made",
             partial(find_generation_improved_by, 0.9),

@@ -11,7 +11,11 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, by_share, interval
+from bezierplan.analysis.claims.effects import (
+    LEAST_WITHOUT_EXAMPLE,
+    compute_interval_of_draws,
+    mark_share,
+)
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts import chaotic_maps
@@ -248,7 +252,7 @@ def several_homotopy_classes(
     """
     found = results[check.experiment]
     runs = select(found.runs, check.where)
-    classes = metrics.values(runs, "homotopy", found.problems)
+    classes = metrics.compute_values(runs, "homotopy", found.problems)
     least = runs.groupby(classes)["length"].transform("min")
     converged = classes[runs["length"] <= least * (1 + CONVERGED)].value_counts()
     number = int((converged > 1).sum())
@@ -271,7 +275,7 @@ def least_above(
         axis=1
     )
     share = float((values.columns.to_numpy()[means.argmin(axis=1)] > limit).mean())
-    return by_share(share), share, None, len(values)
+    return mark_share(share), share, None, len(values)
 
 
 def fewer_outliers(
@@ -306,7 +310,7 @@ def fewer_outliers(
             inside &= ((low - reach <= drawn) & (drawn <= high + reach)).all(axis=-1)
         clear[name] = inside.mean(axis=1)
     effects = clear.pop("singer") - np.mean(list(clear.values()), axis=0)
-    effect, (low, high) = float(effects.mean()), interval(effects)
+    effect, (low, high) = float(effects.mean()), compute_interval_of_draws(effects)
     within = "0" if -margin <= low and high <= margin else "?"
     mark = (
         "+" if effect >= margin and low > 0 else "-" if effect <= -margin and high < 0 else within

@@ -6,8 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis.measures import samples_of
-from bezierplan.analysis.metric import Metric, count, metric, on_map, on_maps, register
+from bezierplan.analysis.measures import sample_path
+from bezierplan.analysis.metric import (
+    Metric,
+    build_count,
+    measure_on_maps,
+    metric,
+    on_map,
+    register,
+)
 from bezierplan.workspaces.circles import Circles
 
 if TYPE_CHECKING:
@@ -50,7 +57,7 @@ def compute_homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
 )
 def homotopy(path: Path, workspace: Workspace) -> float:
     """Return the homotopy class of a path (`compute_homotopy_class`)."""
-    return compute_homotopy_class(samples_of(path, CLASS_SAMPLES), workspace)
+    return compute_homotopy_class(sample_path(path, CLASS_SAMPLES), workspace)
 
 
 @metric(
@@ -71,7 +78,9 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
     }
     best = runs["problem"].map(best).to_numpy()
     return np.where(
-        np.isnan(best), np.nan, runs["feasible"] & (on_maps(homotopy, runs, problems) == best)
+        np.isnan(best),
+        np.nan,
+        runs["feasible"] & (measure_on_maps(homotopy, runs, problems) == best),
     )
 
 
@@ -104,7 +113,7 @@ register(
             "samples", "colliding samples of the best path, added over iterations", step=1.0
         ),
         "collisions_d": Metric("iterations", "iterations whose best path collides", step=1.0),
-        "collisions_e": count("whether the final path collides, by the planner's own test"),
-        "collisions_f": count("paths evaluated that collide"),
+        "collisions_e": build_count("whether the final path collides, by the planner's own test"),
+        "collisions_f": build_count("paths evaluated that collide"),
     }
 )

@@ -26,13 +26,13 @@ from types import ModuleType
 from bezierplan.analysis.claims.check import ClaimCheck
 
 
-def kind_of(check: ClaimCheck) -> ModuleType:
-    """The file of a check's kind of test."""
+def load_kind(check: ClaimCheck) -> ModuleType:
+    """Load the file of a check's kind of test."""
     return importlib.import_module(f"{__name__}.{check.test}")
 
 
 @cache
-def kinds() -> dict[str, type[ClaimCheck]]:
-    """Kind of test -> the options of its checks."""
+def list_kinds() -> dict[str, type[ClaimCheck]]:
+    """List all kinds of test, each with the options of its checks."""
     names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
     return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}

@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, with_itself
+from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, refuse_same_group
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
@@ -34,38 +34,41 @@ class Options(Comparing):
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
-        with_itself(itertools.product(self.groups, self.than), "than")
+        refuse_same_group(itertools.product(self.groups, self.than), "than")
         return self
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Each group paired with each of the others."""
+    """Yield each group paired with each of the others."""
     for group, other in itertools.product(check.groups, check.than):
         yield Terms(group, "as", other), [group, other]
 
 
-def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
-    """Whether the effect, less the target, lies within the margin."""
+def is_within_margin(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
+    """Return whether the effect, less the target, lies within the margin."""
     return np.abs(values - check.target) <= margin
 
 
-EFFECT = effects.BETWEEN_GROUPS._replace(holds=claimed)
+EFFECT = effects.BETWEEN_GROUPS._replace(holds=is_within_margin)
 
 
 def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Two one-sided tests of whether two cells' difference, less the target, lies within the
-    margin; p of being outside where it is.
+    """Test by two one-sided tests whether two cells' difference, less the target, lies within the
+    margin.
+
+    name: seeds the draws. p is that of lying outside where the effect lies within, and the other
+    way round.
     """
-    ours = effects.of_ours(check, comparison)
-    n, reason = effects.units(comparison), effects.too_few(comparison)
+    ours = effects.compute_our_effect(check, comparison)
+    n, reason = effects.count_units(comparison), effects.explain_too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if effects.point_statistic(check) in WITHOUT_INTERVAL:
-        return effects.by_draws(check, comparison, name)
-    margin = effects.margin_of(check, comparison)
-    draws = effects.drawn_effects(check, comparison, name)
-    low, high = effects.interval(draws)
-    toward = 1 if bool(claimed(check, ours, margin)) else -1
+    if effects.choose_statistic(check) in WITHOUT_INTERVAL:
+        return effects.judge_by_draws(check, comparison, name)
+    margin = effects.compute_margin(check, comparison)
+    draws = effects.draw_effects(check, comparison, name)
+    low, high = effects.compute_interval_of_draws(draws)
+    toward = 1 if bool(is_within_margin(check, ours, margin)) else -1
     beyond = draws - check.target
     if math.isnan(low):
         p = math.nan
@@ -74,5 +77,5 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
     else:
         inside = beyond <= margin if ours > check.target else beyond >= -margin
         p = min(1.0, 2 * float(np.mean(inside)))
-    reason = effects.why_none(ours)
+    reason = effects.explain_missing(ours)
     return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=reason)

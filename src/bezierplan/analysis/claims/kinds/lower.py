@@ -37,10 +37,10 @@ from bezierplan.analysis.claims.check import (
     Group,
     Groups,
     OfRuns,
-    with_itself,
+    refuse_same_group,
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
-from bezierplan.analysis.claims.ranks import rank_test, wins
+from bezierplan.analysis.claims.ranks import compare_ranks, compute_a12
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
 
@@ -93,92 +93,99 @@ class Options(Comparing):
             raise build_error("groups: expected groups and than, or pairs, or order")
         if any(len(pair) != 2 for pair in self.pairs or []):
             raise build_error("pairs: expected a list of [group, other group]")
-        with_itself(self.compared, max(named))
+        refuse_same_group(self.compared, max(named))
         return self
 
     @property
     def compared(self) -> list[tuple]:
-        """A group and the one that it is compared with, of each comparison."""
+        """Return the pairs that are compared: a group and the one beside it."""
         tiers = self.order or [self.groups or [], self.than or []]
         of_tiers = [itertools.product(*both) for both in itertools.pairwise(tiers)]
         return [*(self.pairs or []), *itertools.chain.from_iterable(of_tiers)]
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Each pair, or each group paired with each of the others, or of the next tier."""
+    """Yield each pair: as written, or each group with each of the others, or of the next tier."""
     for group, other in check.compared:
         yield Terms(group, f"{check.direction} than", other), [group, other]
 
 
 def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
-    """Test whether the first cell is lower (higher) than the second."""
-    ours = effects.of_ours(check, comparison)
-    n, reason = effects.units(comparison), effects.too_few(comparison)
+    """Test whether the first cell is lower (higher) than the second. name: seeds the draws."""
+    ours = effects.compute_our_effect(check, comparison)
+    n, reason = effects.count_units(comparison), effects.explain_too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if effects.point_statistic(check) in WITHOUT_INTERVAL:
-        finding = effects.by_draws(check, comparison, name)
+    if effects.choose_statistic(check) in WITHOUT_INTERVAL:
+        finding = effects.judge_by_draws(check, comparison, name)
         return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
     side, least = effects.SIDES[check.direction], check.least
-    margin = effects.margin_of(check, comparison)
-    draws = effects.drawn_effects(check, comparison, name)
-    low, high = effects.interval(draws)
+    margin = effects.compute_margin(check, comparison)
+    draws = effects.draw_effects(check, comparison, name)
+    low, high = effects.compute_interval_of_draws(draws)
     toward = np.sign(side * ours - least)
     if not least and abs(ours) < margin:
         toward = 0
     (stratum, *others) = comparison.strata.values()
-    group, reference = effects.counted(stratum, comparison.paired)
+    group, reference = effects.select_counted(stratum, comparison.paired)
     named = check.statistic
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
-        p = effects.two_sided(side * draws - least)
+        p = effects.compute_p(side * draws - least)
     elif comparison.boolean:
-        p = _boolean_test(group, reference, comparison.paired)
+        p = _compute_p_of_booleans(group, reference, comparison.paired)
     elif named == "mean":
-        p = _t_test(
-            *_shifted(check, *effects.finite(stratum, comparison.paired)), comparison.paired
+        p = _compute_p_of_means(
+            *_shift_other(check, *effects.select_finite(stratum, comparison.paired)),
+            comparison.paired,
         )
     else:
-        p, ranked = rank_test(*_shifted(check, group, reference), comparison.paired)
+        p, ranked = compare_ranks(*_shift_other(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
         toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
     infinite = any(np.isinf(each).any() for each in comparison.strata.values())
     if not (math.isfinite(ours) or infinite):
         p = math.nan
-    size_name, size = _effect_size(check, comparison, side, ours)
+    size_name, size = _compute_effect_size(check, comparison, side, ours)
     finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
-    reason = effects.why_none(p) or ("" if toward else effects.no_difference(low, high, n))
+    reason = effects.explain_missing(p) or (
+        "" if toward else effects.explain_no_difference(low, high, n)
+    )
     negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
     finding = finding._replace(negligible=negligible, reason=reason)
-    return _without_p(finding) if ours and _are_constant(comparison) else finding
+    return _remove_p(finding) if ours and _is_constant(comparison) else finding
 
 
-def _are_constant(comparison: Contrast) -> bool:
-    """Whether each cell has one and the same number in all its units, in every condition."""
+def _is_constant(comparison: Contrast) -> bool:
+    """Return whether each cell has one and the same number in all its units, in every condition."""
     cells = [
         values
         for stratum in comparison.strata.values()
-        for values in effects.counted(stratum, comparison.paired)
+        for values in effects.select_counted(stratum, comparison.paired)
     ]
     return not comparison.boolean and all(
         np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
     )
 
 
-def _without_p(finding: Finding) -> Finding:
-    """The finding on two constants that differ, with the mark that its p gives, and no p: nothing
-    varies by chance.
+def _remove_p(finding: Finding) -> Finding:
+    """Remove p from the finding on two constants that differ, since nothing varies by chance, and
+    keep the mark that it gives.
     """
     reason = finding.reason or "both are constant, so there is no p"
-    return finding._replace(mark=verdicts.mark(finding, finding.p), p=math.nan, reason=reason)
+    return finding._replace(
+        mark=verdicts.choose_mark(finding, finding.p), p=math.nan, reason=reason
+    )
 
 
-def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
-    """p of two means; of the ranks if values without spread leave t undefined."""
+def _compute_p_of_means(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
+    """Compute p of two means by Student's t; by ranks if values without spread leave t
+    undefined.
+    """
     from scipy import stats
 
     spread = (group - reference).std() if paired else group.std() + reference.std()
     if spread <= 1e-12 * max(np.abs(group).max(), np.abs(reference).max(), 1e-300):
-        return rank_test(group, reference, paired)[0]
+        return compare_ranks(group, reference, paired)[0]
     # scipy warns of a sample that is constant, as a count that settings fix: its variance is 0.
     with warnings.catch_warnings(action="ignore", category=RuntimeWarning):
         test = (
@@ -189,11 +196,11 @@ def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
     return float(test.pvalue)
 
 
-def _shifted(
+def _shift_other(
     check: OfRuns, group: np.ndarray, reference: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Values of both groups, the other's shifted by the claimed least effect; infinite ones
-    replaced by a value beyond any difference.
+    """Shift the other group's values by the claimed least effect, and replace infinite values of
+    both by one beyond any difference.
     """
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
@@ -202,38 +209,43 @@ def _shifted(
     return group, reference * (1 + move) if check.relative else reference + move
 
 
-def _boolean_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
-    """McNemar's exact p for pairs of booleans, Fisher's for two groups."""
+def _compute_p_of_booleans(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
+    """Compute p of booleans: McNemar's exact test for pairs, Fisher's for two groups."""
     from scipy import stats
 
     if paired:
         more, fewer = int(np.sum(group > reference)), int(np.sum(group < reference))
         return float(stats.binomtest(more, more + fewer).pvalue) if more + fewer else 1.0
-    return float(stats.fisher_exact(_contingency(group, reference)).pvalue)
+    return float(stats.fisher_exact(_count_contingency(group, reference)).pvalue)
 
 
-def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
+def _count_contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
+    """Count true and false values of each group, the rows of a contingency table."""
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _effect_size(check: OfRuns, comparison: Contrast, side: int, ours: float) -> tuple[str, float]:
-    """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction;
-    or the difference itself.
+def _compute_effect_size(
+    check: OfRuns, comparison: Contrast, side: int, ours: float
+) -> tuple[str, float]:
+    """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
+    the claimed direction; or the difference itself.
     """
-    pairs = [effects.counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
+    pairs = [
+        effects.select_counted(stratum, comparison.paired) for stratum in comparison.strata.values()
+    ]
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs
         if comparison.paired:
             odds = np.array([np.sum(group > other), np.sum(group < other)], dtype=float)
         else:
-            (a, b), (c, d) = _contingency(group, other)
+            (a, b), (c, d) = _count_contingency(group, other)
             odds = np.array([a * d, b * c], dtype=float)
         with np.errstate(divide="ignore", invalid="ignore"):
             return "odds ratio", float(odds[0] / odds[1])
-    if effects.point_statistic(check) not in ("mean", "median"):
+    if effects.choose_statistic(check) not in ("mean", "median"):
         return "difference", ours
     if comparison.paired:
         won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]
     else:
-        won = [wins(group, other) for group, other in pairs]
+        won = [compute_a12(group, other) for group, other in pairs]
     return "A12", float(np.mean(won)) if side > 0 else 1 - float(np.mean(won))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class LowestRun(Model):
-    """One feasible run of each condition and method."""
+    """The choice of one feasible run for each condition and method."""
 
     lowest: Metric = Field(description="the name of a metric")
 
@@ -84,13 +84,13 @@ class Options(OfRuns):
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """One cell, of all runs."""
+    """Yield one cell, that of all runs."""
     event = " ".join(map(str, check.limit or ()))
     yield Terms(event, " ".join(filter(None, ["in", check.direction])), check.threshold), [""]
 
 
-def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
-    """Whether the share is on the claimed side of the threshold."""
+def is_claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
+    """Return whether the share is on the claimed side of the threshold."""
     match check.threshold:
         case "all" | "as printed":
             return values == 1
@@ -104,18 +104,20 @@ def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
 EFFECT = Effect(
     lambda check, points, cells: points[..., 0],
     lambda check, ours, cells: np.ones(1),
-    claimed,
+    is_claimed,
     reference=0,
     statistic="share",
 )
 
 
 def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Test the share of units in which the event happens."""
+    """Test the share of units in which the event happens. Raises ValueError for values other than
+    true and false.
+    """
     from scipy import stats
 
     happened = np.concatenate(
-        [effects.counted(stratum, False)[0] for stratum in comparison.strata.values()]
+        [effects.select_counted(stratum, False)[0] for stratum in comparison.strata.values()]
     )
     n, k = len(happened), int(happened.sum())
     if not n:
@@ -126,16 +128,16 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
         )
     finding = Finding(k / n, "share", k / n, n=n)
     if check.pick:
-        return finding._replace(mark="+" if _holds(check, finding) else "-")
+        return finding._replace(mark="+" if _is_claimed_by(check, finding) else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     finding = finding._replace(low95=float(exact.low), high95=float(exact.high))
     if isinstance(check.threshold, str):
-        return _by_example(check, finding, comparison.paper_units)
+        return _judge_by_example(check, finding, comparison.paper_units)
     if n < LEAST_RUNS:
         return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
     threshold, side = check.threshold, effects.SIDES[check.direction]
     if len(comparison.strata) >= LEAST_RUNS:
-        return _share_of_conditions(finding, comparison, threshold, side)
+        return _test_over_conditions(finding, comparison, threshold, side)
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(
         1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold)))
@@ -143,14 +145,17 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
     return finding._replace(p=p, toward=int(side * np.sign(k / n - threshold)))
 
 
-def _holds(check: Options, finding: Finding) -> bool:
-    return bool(claimed(check, np.array(finding.effect), math.nan))
+def _is_claimed_by(check: Options, finding: Finding) -> bool:
+    """Return whether the share of a finding is on the claimed side of the threshold."""
+    return bool(is_claimed(check, np.array(finding.effect), math.nan))
 
 
-def _by_example(check: Options, finding: Finding, paper_units: int | None) -> Finding:
-    """The finding on `all`, `none` or `some`: for `some`, one example decides and many misses are
-    needed to refute it; for the others it is the other way round. And on `as printed`, where the
-    paper's number of units is known.
+def _judge_by_example(check: Options, finding: Finding, paper_units: int | None) -> Finding:
+    """Judge a share by examples and return the finding.
+
+    For `some`, one example decides and many misses are needed to refute it; for `all` and `none` it
+    is the other way round. `as printed` is judged by chance where the paper's number of units is
+    known.
     """
     if check.threshold == "as printed" and paper_units:
         low, chance, high = (
@@ -159,17 +164,17 @@ def _by_example(check: Options, finding: Finding, paper_units: int | None) -> Fi
         mark = "+" if low > effects.ALPHA else "-" if high < effects.ALPHA else "?"
         reason = f"the chance of {paper_units} of {paper_units} is {chance:.2g}"
         return finding._replace(mark=mark, reason=reason)
-    holds = _holds(check, finding)
+    holds = _is_claimed_by(check, finding)
     if holds == (check.threshold == "some") or finding.n >= effects.LEAST_WITHOUT_EXAMPLE:
         return finding._replace(mark="+" if holds else "-")
     return finding._replace(mark="?", reason=f"fewer than {effects.LEAST_WITHOUT_EXAMPLE} runs")
 
 
-def _share_of_conditions(
+def _test_over_conditions(
     finding: Finding, comparison: Contrast, threshold: float, side: int
 ) -> Finding:
-    """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t
-    over their shares.
+    """Test the shares of random conditions, such as layouts, by Student's t. Conditions are the
+    units, because runs of one are alike.
     """
     from scipy import stats
 

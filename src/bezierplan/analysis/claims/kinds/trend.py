@@ -18,7 +18,7 @@ from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import WORK, WithMargin
 from bezierplan.analysis.claims.effects import Contrast, Effect, Finding, Terms
-from bezierplan.analysis.claims.ranks import signed_rank_test
+from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Metric, NumberColumn
 from bezierplan.workspaces.seeds import generator
@@ -39,7 +39,7 @@ class Options(WithMargin):
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """All values of x, rising."""
+    """Yield one comparison of all values of x, rising."""
     yield Terms(check.x, check.direction), sorted(rows[check.x].dropna().unique())
 
 
@@ -47,69 +47,70 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
 _DIGITS = 12
 
 
-def _weights(x: np.ndarray) -> np.ndarray:
-    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; NaN for a
-    single x.
+def _compute_weights(x: np.ndarray) -> np.ndarray:
+    """Compute the weights (k,) of values over x (k,) that give least-squares slope times range of
+    x; NaN for a single x.
     """
     from_mean = x - x.mean()
     return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
-def _change(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The change from the lowest x to the highest; if relative, as a share of the value at the
-    lowest.
+def _compute_change(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """Compute the change from the lowest x to the highest; if relative, as a share of the value at
+    the lowest.
     """
-    change = points @ _weights(np.array(cells, dtype=float))
+    change = points @ _compute_weights(np.array(cells, dtype=float))
     return change / points[..., 0] if check.relative else change
 
 
-def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+def _compute_gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    """Compute how the change depends on the value at each x (k,); None if relative to zero."""
     reference = ours[0] if check.relative else 1.0
-    return _weights(np.array(cells, dtype=float)) / reference if reference else None
+    return _compute_weights(np.array(cells, dtype=float)) / reference if reference else None
 
 
-EFFECT = Effect(_change, _gradient, effects.on_claimed_side, reference=0)
+EFFECT = Effect(_compute_change, _compute_gradient, effects.is_on_claimed_side, reference=0)
 
 
 def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Test whether a metric changes with x as claimed."""
+    """Test whether a metric changes with x as claimed. name: seeds the draws."""
     x = np.array(comparison.cells, dtype=float)
     (stratum,) = comparison.strata.values()
-    slopes = _slopes(x, stratum)
-    n, statistic = len(slopes), effects.point_statistic(check)
+    slopes = _compute_slopes(x, stratum)
+    n, statistic = len(slopes), effects.choose_statistic(check)
     if n < LEAST_RUNS:
         reason = f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}"
         return Finding(n=n, mark="?", reason=reason)
     # A unit counts wherever it has a value, even if not at every x.
     comparison = comparison._replace(paired=False)
-    ours = effects.points(comparison, statistic)
+    ours = effects.compute_points(comparison, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
         reference = ours[0] if check.relative else 1.0
         changes = slopes * np.ptp(x) / (reference or math.nan)
         change = float(changes.mean())
         if n > MOST_RESAMPLED:
-            draws = statistics.normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
+            draws = statistics.compute_normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
         else:
-            draws = statistics.resampled("mean", changes, n, generator(name))
-        p = signed_rank_test(slopes)
+            draws = statistics.resample("mean", changes, n, generator(name))
+        p = compute_p_of_signed_ranks(slopes)
     else:
-        slope = float(_weights(x) @ ours / np.ptp(x))
-        change = float(effects.effect(check, ours, comparison.cells))
-        draws = effects.drawn_effects(check, comparison, name)
-        p = effects.two_sided(draws)
-    low, high = effects.interval(draws)
-    margin = effects.margin_of(check, comparison)
+        slope = float(_compute_weights(x) @ ours / np.ptp(x))
+        change = float(effects.compute_effect(check, ours, comparison.cells))
+        draws = effects.draw_effects(check, comparison, name)
+        p = effects.compute_p(draws)
+    low, high = effects.compute_interval_of_draws(draws)
+    margin = effects.compute_margin(check, comparison)
     toward = int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change)))
     toward = 0 if abs(change) < margin else toward
     negligible = effects.is_negligible(low, high, margin, n)
     finding = Finding(change, "slope", slope, low, high, n, p, toward, margin, negligible)
-    reason = effects.why_none(change) or effects.no_difference(low, high, n)
+    reason = effects.explain_missing(change) or effects.explain_no_difference(low, high, n)
     return finding._replace(reason=reason)
 
 
-def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
-    """Least-squares slopes over x of units that have a finite value at 3 of x or more.
+def _compute_slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
+    """Compute the least-squares slopes over x of units that have a finite value at 3 of x or more.
 
     They are ranked, so those that should be equal, or zero, must not differ by how a processor
     rounds: slopes are rounded to a share of the steepest, and a constant has none.
@@ -118,6 +119,6 @@ def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
     for values in stratum[np.isfinite(stratum).sum(axis=1) >= 3]:
         there = np.isfinite(values)
         rises = values[there] - values[there][0]
-        slopes.append((_weights(x[there]) * rises).sum() / np.ptp(x[there]))
+        slopes.append((_compute_weights(x[there]) * rises).sum() / np.ptp(x[there]))
     steepest = np.abs(slopes).max(initial=0.0)
     return np.round(slopes / steepest, _DIGITS) * steepest if steepest > 0 else np.array(slopes)

@@ -19,5 +19,5 @@ class Options(ClaimCheck):
 
 
 def findings(check: Options, claim: Claim, material: Material) -> NoReturn:
-    """None. Raises Untestable with the reason."""
+    """Refuse the test: raise Untestable with the reason."""
     raise Untestable(check.reason)

@@ -79,7 +79,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     problem = results.problems[only(results.runs, "problem")]
     method = only(results.runs, "method")
     feasible = results.runs[results.runs["feasible"]]
-    groups = metrics.values(feasible, options.by, results.problems)
+    groups = metrics.compute_values(feasible, options.by, results.problems)
     parts = [workspaces.ends(problem)]
     for group in _rank_commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
