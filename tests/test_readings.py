@@ -117,7 +117,7 @@ CLAIMS["verdict"] = ["supported", "undecided", "supported", "undecided"]
 
 
 def under(**verdicts):
-    """Verdicts on C1 by reading, as `with_dependence` takes them."""
+    """Verdicts on C1 by reading, as `add_dependence` takes them."""
     return {
         name: by_reading.ClaimTables(pd.DataFrame({"id": ["C1"], "verdict": [verdict]}), None)
         for name, verdict in verdicts.items()

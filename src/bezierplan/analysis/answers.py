@@ -1,4 +1,4 @@
-"""What exact geometry says of one path, and what to print of it."""
+"""The judgement of exact geometry on one path, and its description in lines."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int, "stop": str}
-"""Fields that are the planner's own, beside the history."""
+"""Fields that are the planner's own, beside the history, and their types."""
 
 
 def judge_path(

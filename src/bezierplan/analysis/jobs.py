@@ -183,7 +183,7 @@ class TableOfRuns(Job):
     name: str
     """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
     spec: Pivot
-    """Without its title, which stands in the caption alone."""
+    """The table without its title, which stands in the caption alone."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     variants: dict[str, str]
@@ -194,7 +194,7 @@ class TableOfRuns(Job):
     fitted: dict[str, dict]
     """By metric, the numbers to which something was fitted."""
     paired: bool
-    """Whether runs with equal repeat numbers start alike."""
+    """True if runs with equal repeat numbers start alike."""
     repeats: int
 
     def run(self, input_files, output_files):
@@ -233,10 +233,10 @@ class TableOfRuns(Job):
 
 @dataclass(frozen=True)
 class TableWithoutRuns(Job):
-    """What a paper prints, or what follows from it."""
+    """A table that a paper prints, or that a function computes from printed numbers."""
 
     spec: TableEntry
-    """Without its title."""
+    """The table without its title."""
 
     def run(self, input_files, output_files):
         """Build the table from published numbers or by a function."""
@@ -308,7 +308,7 @@ class Audit(Job):
     tables: dict[str, Pivot]
     """By the name of their published numbers, without what is only printed."""
     reconstructed: list[str]
-    """Those whose maps are."""
+    """Tables on maps that the paper does not print."""
 
     def run(self, input_files, output_files):
         """Check the printed numbers against each other and against bounds."""
@@ -328,7 +328,7 @@ class Audit(Job):
 
 @dataclass(frozen=True)
 class MethodsTable(Job):
-    """What the methods of all studies give on each problem, beside the exact shortest path."""
+    """The results of all studies' methods on each problem, beside the exact shortest path."""
 
     proposed: dict[str, str | None]
     """By study, the method that its paper proposes."""
@@ -385,9 +385,9 @@ class Verification(Job):
     """
 
     folder: str
-    """That of the scale."""
+    """The folder of the scale."""
     studies: dict[str, str]
-    """Those of the page, by name, each with the word that names it in a configuration."""
+    """The studies of the page, by name, each with the word that names it in a configuration."""
     accounts: list[tuple[list[str], str, dict[str, str]]]
     """Files below it, with the key and the account of the job that makes them."""
 

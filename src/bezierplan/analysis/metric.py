@@ -1,4 +1,4 @@
-"""What a metric is, and how a function declares that it is one (`measures`)."""
+"""The model of a metric, and the decorators by which a function becomes one (`measures`)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MEASURES_KEPT = 250_000
 
 
 class Metric(NamedTuple):
-    """What is measured of a run.
+    """A quantity that is measured of each run.
 
     Attributes
     ----------
@@ -134,6 +134,7 @@ def metric(
     """
 
     def register_function(function: F) -> F:
+        """Register the metric of a function, and return the function unchanged."""
         own = not function.__module__.startswith("bezierplan.")
         metric = Metric(unit, meaning, adapter(function), **facts, own=own)
         register({function.__name__: metric})
@@ -148,6 +149,7 @@ def of_path(unit: str, meaning: str, **facts: Any) -> Callable[[F], F]:
     """
 
     def apply_to_runs(measure: Callable[[Path], float]) -> Compute:
+        """Turn a measure of a path into one of (runs, problems)."""
         return lambda runs, _: measure_paths([measure] * len(runs), runs)
 
     return metric(unit, meaning, apply_to_runs, **{"feasible_only": True} | facts)

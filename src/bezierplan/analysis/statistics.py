@@ -57,7 +57,7 @@ def _compute_quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
 
 
 _SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
-"""Those that are quantiles. `unstated`: the paper does not say; the median of ours is printed."""
+"""Statistics that are quantiles. `unstated`: the paper does not say; our median is printed."""
 
 STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "mean": _compute_mean,

@@ -37,8 +37,8 @@ PublishedFile = Annotated[
     Names("published"),
 ]
 WORDS = ("value", "statistic")
-"""What distinguishes numbers of a table beside columns of the runs table: which entry of `values`,
-and which of its statistics.
+"""Words that distinguish numbers of a table beside columns of the runs table: the entry of
+`values`, and the statistic of it.
 """
 # A column of the runs table, or one of these words.
 Columns = build_list_type(Annotated[Name, Names("level")], least=0)
@@ -185,6 +185,9 @@ class Pivot(TableEntry):
 
     @model_validator(mode="after")
     def _check_places(self) -> "Pivot":
+        """Refuse a table whose places are not distinct, or that reads numbers which it does not
+        have.
+        """
         if not self.index:
             raise build_error("index: []: expected at least one column")
         for key in self.columns:
@@ -222,7 +225,7 @@ class Pivot(TableEntry):
 
 
 class Transcript(TableEntry):
-    """A published file, unchanged."""
+    """A table that shows a published file unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
     published: PublishedFile = Field(

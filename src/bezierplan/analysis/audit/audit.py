@@ -45,7 +45,7 @@ then each digit is about equally likely, whatever is measured.
 """
 
 LEVEL = 0.05
-"""Of Friedman's test."""
+"""The level of Friedman's test."""
 
 LEAST_MEANS = 5
 """Means beside minimum and maximum that a paper needs."""

@@ -32,7 +32,7 @@ COLUMNS = [
     *("place", "group", "relation", "other", "metric", "unit", "scale"),
     *("effect", "low95", "high95"),
 ]
-"""Of claims by reading: the verdict on the whole claim, and on the check; how many of its
+"""Columns of claims by reading: the verdict on the whole claim, and on the check; how many of its
 comparisons are +; and the comparison that speaks most against it.
 """
 

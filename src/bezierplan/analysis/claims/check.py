@@ -103,6 +103,7 @@ class ClaimCheck(Model):
     _reported: bool = PrivateAttr(False)
 
     def __getattr__(self, key: str) -> Any:
+        """Return the neutral value of a key that only other kinds have."""
         return _NEUTRAL[key] if key in _NEUTRAL else super().__getattr__(key)
 
     @property
@@ -156,7 +157,7 @@ def refuse_same_group(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
 
 
 class OfRuns(ClaimCheck):
-    """What all checks share that judge runs."""
+    """The keys that all checks of runs share."""
 
     experiment: build_list_type(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
@@ -219,7 +220,7 @@ class OfRuns(ClaimCheck):
 
 
 class WithMargin(OfRuns):
-    """Checks of an effect that may be too small to matter."""
+    """The keys of checks whose effect may be too small to matter."""
 
     scale: Literal["absolute", "relative"] = Field(
         "absolute",
@@ -233,7 +234,7 @@ class WithMargin(OfRuns):
 
 
 class Comparing(WithMargin):
-    """Checks that compare groups."""
+    """The keys that all checks share that compare groups."""
 
     against: ClassVar[bool] = True
     cells_key: ClassVar[str | None] = "across"

@@ -81,6 +81,9 @@ class Claim(Model):
 
     @model_validator(mode="after")
     def _check_decides(self) -> "Claim":
+        """Refuse a claim that nothing decides, or whose variants are too many or of
+        unequal length.
+        """
         if not any(check.primary for check in self.checks):
             raise build_error("checks: every check has secondary: true; expected one that decides")
         if math.prod(map(len, self.variants.values())) > MOST_VARIANTS:

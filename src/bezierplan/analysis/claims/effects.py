@@ -158,8 +158,8 @@ class MarkedComparison(NamedTuple):
 
 
 def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
-    """Return whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the
-    values are already boolean.
+    """Return where the event of a share happened, as 1 and 0; NaN is kept. If the check has no
+    event, the values are already boolean.
     """
     if check.limit is None:
         return values

@@ -32,8 +32,8 @@ its own; contradicted by one - in the family, or by a 0 beside a +; no effect wi
 otherwise undecided.
 
 A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are
-reported next to it, and the reason says where they disagree. Without one, the seconds decide:
-between planners of different kinds, whose evaluations are different things.
+reported next to it, and the reason says where they disagree. If it names none, the seconds decide:
+the planners are then of different kinds, whose evaluations are different things.
 
 `columns` describes the columns of the two tables: claims.csv, one row per claim and variant, and
 claim_checks.csv, one row per comparison.
@@ -237,6 +237,9 @@ def _select_decisive(deciding: list[MarkedComparison], holds: str) -> MarkedComp
     """
 
     def find_p(entry: MarkedComparison) -> float:
+        """Return p by which comparisons are ordered; without p, more than any if not +,
+        else less.
+        """
         if math.isnan(entry.finding.p):
             return -1.0 if entry.mark == "+" else 2.0
         return entry.finding.p

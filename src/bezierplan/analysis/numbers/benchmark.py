@@ -18,7 +18,7 @@ _MEDIANS = [*_OF_FREE, "evaluations", "cpu_s"]
 _SCORED = ["problem", "method", "runs", "feasible", "excess", "evaluations"]
 
 STORED = TREE / "docs" / "outcome" / "methods.csv"
-"""What the papers' methods give on each problem."""
+"""The file with the results of the papers' methods on each problem."""
 
 
 def compute_summaries(runs: pd.DataFrame) -> pd.DataFrame:

@@ -106,7 +106,7 @@ COLUMNS = [
 
 def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
     """Read the published numbers of a table: key columns, metric, statistic, n, unit, value,
-    as_printed (the value's text). Without a file, the table is empty, with the table's keys.
+    as_printed (the value's text). If there is no file, it is empty, with the table's keys.
     """
     if file is None:
         columns = ("metric", "statistic", "n", "unit", "value", "as_printed")

@@ -1,4 +1,4 @@
-"""What each method gives on each problem: a row per study, family of problems, method and problem.
+"""Results of each method on each problem: a row per study, family of problems, method and problem.
 
 Columns of `methods.csv`:
 
@@ -33,7 +33,7 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 BASELINE = "the exact shortest path with rounded corners"
-"""What every method stands beside, in words."""
+"""The planner that every method is compared with, in words."""
 
 # Paths whose turns are measured: more take longer than to find them, and move no median.
 _MEASURED = 100

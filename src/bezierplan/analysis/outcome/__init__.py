@@ -1,1 +1,1 @@
-"""What follows: the outcome of all studies, in sentences, tables and checks."""
+"""The outcome of all studies, in sentences, tables and checks."""

@@ -1,4 +1,4 @@
-"""What numbers, claims and methods say together, in a sentence each: README, page and the last
+"""The outcome of numbers, claims and methods, in a sentence each: README, page and the last
 lines of a run show the same.
 """
 

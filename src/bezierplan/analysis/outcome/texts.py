@@ -50,6 +50,7 @@ class Fact(Model):
 
     @model_validator(mode="after")
     def _check_comparison(self) -> "Fact":
+        """Refuse a fact without exactly one comparison."""
         if sum(getattr(self, name) is not None for name in COMPARISONS) != 1:
             raise build_error(f"expected one of {', '.join(COMPARISONS)}")
         return self

@@ -1,4 +1,4 @@
-"""Whether two groups differ by no more than the margin.
+"""Test whether two groups differ by no more than the margin.
 
 Two one-sided tests: the 90 % interval of the difference, less the target, lies within the margin.
 Effect and effect size are the difference of the statistic that the check names.
@@ -34,6 +34,7 @@ class Options(Comparing):
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
+        """Refuse a group that is compared with itself."""
         refuse_same_group(itertools.product(self.groups, self.than), "than")
         return self
 

@@ -1,4 +1,4 @@
-"""Whether groups are lower, or higher, than others: each of some than each of others, or every
+"""Test whether groups are lower, or higher, than others: each of some than each of others, or every
 one of a tier than every one of the next.
 
 | statistic | test | effect size |
@@ -88,6 +88,9 @@ class Options(Comparing):
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
+        """Refuse keys of groups that do not belong together, and a group that is compared with
+        itself.
+        """
         named = self.model_fields_set & set(GROUP_KEYS)
         if named not in ({"groups", "than"}, {"pairs"}, {"order"}):
             raise build_error("groups: expected groups and than, or pairs, or order")

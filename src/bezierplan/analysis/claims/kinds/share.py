@@ -65,6 +65,7 @@ class Options(OfRuns):
 
     @model_validator(mode="after")
     def _check_side(self) -> Options:
+        """Refuse a direction beside a threshold in words, and a number without one."""
         if isinstance(self.threshold, str) != (self.direction is None):
             needed = (
                 "has no direction" if self.direction else "needs a direction, at_least or at_most"
@@ -74,6 +75,7 @@ class Options(OfRuns):
 
     @model_validator(mode="after")
     def _check_truth(self) -> Options:
+        """Refuse a metric that is neither true nor false if there is no event."""
         metric = METRICS.get(self.metric)
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
             raise build_error(

@@ -1,4 +1,4 @@
-"""Whether the metric rises, or falls, with a numeric column.
+"""Test whether the metric rises, or falls, with a numeric column.
 
 The effect is the change from the lowest to the highest x, the effect size the least-squares slope.
 Wilcoxon's signed ranks test the slopes of the units against 0; with `statistic: std`, the spread of
