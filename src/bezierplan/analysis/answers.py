@@ -44,12 +44,14 @@ def judge_path(
         return fields
     pieces = curves.bezier_pieces(path)
     certified = checker.check(pieces, build_region(problem.workspace))
+    # Obstacles are grown by the robot's radius; its distance is to the original ones.
     at_home = checker.check(pieces, build_region(grown.original)) if grown else certified
     jump = curves.curvature_jump(path)
     if certified.feasible:
         assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
     else:
         fields["collision"] = tuple(curves.point_at(path, certified.collision_at).tolist())
+    # At least 20 samples on each piece, however many there are.
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     return fields | {
         "path": path,

@@ -78,6 +78,7 @@ class Job(ABC):
 
         Objects that have the same text are the same; where files lie does not count.
         """
+        # Sources count by their content, and where files lie does not count.
         names = [each.name for each in fields(self) if each.name not in ("sources", "folder")]
         text = repr([(name, getattr(self, name)) for name in names])
         works = type(self).run, type(self).write
@@ -204,6 +205,7 @@ class TableOfRuns(Job):
         from bezierplan.analysis.numbers import comparison, tables, wholes
         from bezierplan.running import inputs
 
+        # The metrics of a study are known once its code is loaded.
         study_code.load_functions(self.code)
         ((experiment, files),) = inputs.group_by_experiment(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
@@ -264,6 +266,7 @@ class Claims(Job):
     def list_modules(self):
         """List the study's own modules and those of the kinds of check."""
         kinds = {check.test for claim in self.study.claims for check in claim.checks}
+        # Kinds are imported by name, so the imports of `run` do not lead to them.
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
     def run(self, input_files, output_files):

@@ -75,6 +75,7 @@ def extend_histories(runs: pd.DataFrame) -> np.ndarray:
     lengths = runs["history"].map(len).to_numpy()
     starts = np.cumsum(lengths) - lengths
     columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
+    # Histories end to end; beyond the end of one, its last entry is repeated.
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
@@ -180,6 +181,7 @@ def list_steps(points: np.ndarray) -> np.ndarray:
 def compute_heading_changes(steps: np.ndarray) -> np.ndarray:
     """Compute the absolute changes of heading (n - 1,), in radians, between steps (n, 2)."""
     cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    # The arccosine of a dot product would lose digits at small angles.
     return np.abs(np.arctan2(cross, (steps[:-1] * steps[1:]).sum(axis=1)))
 
 
@@ -240,4 +242,5 @@ def blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     straight = {
         name: np.hypot(*np.subtract(each.start, each.target)) for name, each in problems.items()
     }
+    # A straight shortest path has the same length up to rounding.
     return runs["bound"] > runs["problem"].map(straight) * (1 + 1e-9)

@@ -135,6 +135,8 @@ def metric(
 
     def register_function(function: F) -> F:
         """Register the metric of a function, and return the function unchanged."""
+        # Metrics of this project may be infinite, such as a curvature jump; those of others may
+        # not.
         own = not function.__module__.startswith("bezierplan.")
         metric = Metric(unit, meaning, adapter(function), **facts, own=own)
         register({function.__name__: metric})
@@ -169,6 +171,7 @@ def measure_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFram
     """
     given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
     return [
+        # Bytes, because an array cannot be a key of the cache.
         _measure_path(measure, curve, np.asarray(points, dtype=float).tobytes())
         for measure, curve, points in given
     ]

@@ -64,6 +64,7 @@ def compute_values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) 
         for column in metric.needs or (() if metric.compute else (name,))
         if column not in runs
     ]
+    # Measures need at least one run.
     if counted.empty:
         numbers = pd.Series(dtype=float)
     elif lacking:

@@ -48,6 +48,7 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
     table = pd.concat(_read_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
     known, bounded = row_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
+    # A file of another experiment may lie in the place of this one.
     for file, rows in ((files.problems, known), (files.bounds, bounded)):
         if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
             raise row_files.describe_misplaced(file, "not of the problems that the runs are of")
@@ -67,6 +68,7 @@ def read_folder(folder: FilePath, experiment: str) -> Results:
         raise ValueError(f"experiment: {experiment}: no runs of it in {folder}/runs")
     problems = f"{folder}/problems/{experiment}"
     files = Files(runs, f"{problems}.parquet", f"{problems}.bounds.parquet")
+    # As many repeats as there are.
     return read(files, 10**9, experiment)
 
 
@@ -107,6 +109,7 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
     if fault := row_files.find_fault(table.schema, *declared.every, *drives):
         raise row_files.describe_misplaced(file, fault)
+    # Times are written without a digest.
     if kind != "times" and row_files.read_digest(table) != row_files.compute_digest(table):
         raise row_files.describe_misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
@@ -121,6 +124,7 @@ def join_bounds(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.Dat
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     _refuse(runs, runs["length"] < least, "length", "bound")
+    # Drives alone have arrivals.
     if "least_arrival" in runs and "arrival" in runs:
         # The allowance of the length, at the pace of the world.
         _refuse(
@@ -144,6 +148,7 @@ def _repeat_fixed_runs(runs: pd.DataFrame) -> pd.DataFrame:
     # A copy of the generator has its numbers too.
     runs.loc[differ.index[differ], "drew"] = True
     repeats = runs[["condition", "repeat"]].drop_duplicates()
+    # The order of the rows, which the merge would lose.
     runs = runs.assign(place=np.arange(len(runs)))
     once = runs[~runs["drew"]].drop_duplicates(["condition", "method"]).drop(columns="repeat")
     every = pd.concat([runs[runs["drew"]], once.merge(repeats, on="condition")])

@@ -27,6 +27,7 @@ BLOCK = 1 << 15
 
 def _compute_std(values: np.ndarray) -> np.ndarray:
     """Compute the standard deviation of a sample (divisor n - 1), NaN for a single value."""
+    # numpy would warn of a division by zero.
     if values.shape[-1] == 1:
         return np.full(values.shape[:-1], np.nan)
     return np.std(values, axis=-1, ddof=1)
@@ -146,6 +147,7 @@ def compute_influence(name: str, values: np.ndarray) -> np.ndarray:
         return _compute_quantile_influence(values, 0.75) - _compute_quantile_influence(values, 0.25)
     if name in _SHARES:
         return _compute_quantile_influence(values, _SHARES[name])
+    # Divisor n: the influence function is that of the empirical distribution.
     apart, std = values - values.mean(), values.std()
     if name == "std":
         return (apart**2 - std**2) / (2 * std) if std else np.zeros(len(values))
@@ -158,6 +160,7 @@ def _compute_quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
     The density at the quantile is taken from the order statistics at the ends of its 95 % interval
     (McKean and Schrader 1984).
     """
+    # Half the 95 % interval of the rank at which the population's quantile lies, as a share.
     reach = 1.96 * math.sqrt(share * (1 - share) / len(values))
     low, quantile, high = _compute_quantiles(
         values, max(share - reach, 0.0), share, min(share + reach, 1.0)
@@ -235,6 +238,7 @@ def draw_predictions(
     the normal approximation of both stages; where that is not known, experiments of so many values.
     """
     if name in ("count", "share"):
+        # Resampling says nothing about events that never happened; a posterior does.
         true = values.sum()
         counts = rng.binomial(size, rng.beta(true + 0.5, len(values) - true + 0.5, DRAWS))
         return counts / (size if name == "share" else 1)
@@ -308,6 +312,7 @@ def compute_prediction_interval(
     if len(values) < LEAST_RUNS:
         return math.nan, math.nan
     least, most, tail = _predict_ends(name, values, size, rng, possible, groups)
+    # Outwards to the next draw: beside an infinite one nothing can be interpolated.
     low = np.quantile(least, tail, method="lower")
     high = np.quantile(most, 1 - tail, method="higher")
     return float(low), float(high)
@@ -324,6 +329,7 @@ def _predict_ends(
     """Predict the least and the most that experiments of a size may print, given our values (n,),
     and return the tail to leave out at each end.
     """
+    # The paper does not state its number of runs, so single values are compared.
     if size is None:
         return values, values, TAIL
     if groups is not None:
@@ -331,6 +337,7 @@ def _predict_ends(
         # at (k - 1/2) / n among the draws.
         drawn = draw_predictions_within(name, groups, size, rng)
         return drawn, drawn, max(TAIL * (len(groups) + 1) - 0.5, 0.0) / len(groups)
+    # No resample goes beyond our own extremes, so their ranks decide.
     if name in ("min", "max"):
         least, most = _draw_extremes(name, values, size)
         return np.maximum(least, possible[0]), np.minimum(most, possible[1]), TAIL
@@ -338,6 +345,7 @@ def _predict_ends(
         drawn = _draw_stds(values, size)
         return drawn, drawn, TAIL
     drawn = draw_predictions(name, values, size, rng)
+    # Shares are drawn from a posterior: only the bootstrap is too narrow.
     return drawn, drawn, TAIL if name in ("count", "share") else compute_expanded_tail(len(values))
 
 
@@ -356,6 +364,7 @@ def scale_statistic(name: str, values: np.ndarray, among: int, size: int | None)
         return value * size / among
     if name not in ("min", "max"):
         return value
+    # The upper of the middle two draws: one of them may be infinite.
     least, most = (np.sort(ends)[DRAWS // 2] for ends in _draw_extremes(name, values, size))
     return float(0.5 * (least + most)) if math.isfinite(least) and math.isfinite(most) else value
 
@@ -380,6 +389,7 @@ def _draw_stds(values: np.ndarray, size: int) -> np.ndarray:
         * np.sum((values - _compute_trimmed_mean(values)) ** 4)
         / np.sum((values - values.mean()) ** 2) ** 2
     )
+    # Of our sample and of the paper's; a small sample can give a negative estimate.
     variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
     logarithms = 0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS)
     with np.errstate(over="ignore"):  # of two or three values the largest are infinite
@@ -392,6 +402,7 @@ def _compute_trimmed_mean(values: np.ndarray) -> float:
     """
     n = len(values)
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
+    # At least one value stays.
     cut = min(cut, (n - 1) // 2)
     return float(np.sort(values)[cut : n - cut].mean())
 
@@ -418,6 +429,7 @@ def _draw_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray
     All orders of our values and the others are equally likely, which gives the probability of each
     gap; the outermost are infinite.
     """
+    # The largest of values is the least of their negatives.
     if name == "max":
         least, most = _draw_extremes("min", -values, size)
         return -most, -least

@@ -46,5 +46,6 @@ def list_public(of: Any) -> dict[str, Callable[..., Any]]:
         for name, value in (vars(of) if of else {}).items()
         if not name.startswith("_")
         and callable(value)
+        # Names that a module imports are not its own.
         and getattr(value, "__module__", None) == of.__name__
     }

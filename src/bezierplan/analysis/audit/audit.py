@@ -217,6 +217,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
             of_row = describe_cell(row, [*keys, "metric"])
             yield build_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
+        # The test needs true mean ranks, all of the same number of runs.
         if possible.can_be_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
             n = int(sizes[0])
             apart, critical, chi_square, p, least = compute_friedman(group["value"].to_numpy(), n)

@@ -122,6 +122,7 @@ def find_polylines(
     printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
     free = list_edges(grid)
     first, last = (int(np.searchsorted(free.cells, cell)) for cell in cells)
+    # Longer than the printed number too: the chance of a match is that of numbers nearby.
     reached = _list_reachable_lengths(free, first, printed + NEARBY + half, last, edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
     paths = _trace_paths(free, reached, last, printed, half)
@@ -263,6 +264,7 @@ def _list_reachable_lengths(
                 if len(before[other])
             ]
             found = np.concatenate(parts) if parts else np.empty(0)
+            # The same edges in another order have a sum with other last bits.
             level.append(np.unique(np.round(found[found <= left[cell]], 8)))
         levels.append(level)
     return levels
@@ -303,6 +305,7 @@ def _extend_path(
 
 def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
     """Return which lengths round to a printed one."""
+    # Sums are rounded to 8 decimals at each edge, which adds up to less than 1e-7.
     return np.abs(lengths - printed) <= half + 1e-7
 
 

@@ -50,6 +50,7 @@ def _merge_rows_of_rule(rule: str, rows: list[dict]) -> list[dict]:
     judge, stay.
     """
     obeyed = [row for row in rows if row["consistent"] is True]
+    # A single row keeps its own place.
     if len(obeyed) < 2:
         return rows
     items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))

@@ -24,6 +24,7 @@ def check_rules(published: dict[str, pd.DataFrame]) -> list[dict]:
 
     published: tables of printed numbers, by file name, with the rules.
     """
+    # A rule may leave these out: its cell is then its place, and the factor 1.
     rules = published["rules"].fillna({"cell": "", "of": "", "limit": 1.0})
     return merge_rows(
         compare_with_limit(

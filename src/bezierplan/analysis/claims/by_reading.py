@@ -81,6 +81,7 @@ def add_dependence(
             f"{verdict} with {_join_names([names[each] for each in variants])}"
             for verdict, variants in others.groupby("verdict", sort=False)["variant"]
         ]
+        # A reading that only turns supported into partly is on the same side.
         side = SIDES[claim["verdict"]]
         words += [
             f"{verdict} under {name} ({meanings[name]})"

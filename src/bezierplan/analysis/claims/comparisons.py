@@ -110,6 +110,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     paired = check.paired
+    # Equal units belong together if they share a start or a random workspace.
     if paired is None:
         paired = _has_shared_draws(check, material)
     comparison_list = []
@@ -132,6 +133,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
         }
         pooled = rows.groupby(column or "method")["condition"].nunique().max()
         for terms, cells in compared:
+            # A cell without runs becomes a column of NaN, which `effects.explain_too_few` names.
             strata = {
                 key: effects.mark_events(check, table.reindex(columns=cells).to_numpy())
                 for key, table in unit_tables.items()
@@ -164,6 +166,7 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
     failed, if failures rank last), so that a place where no run satisfies it is kept.
     """
     where = check.where
+    # Conditions select runs; outcomes only decide which of these have a value.
     conditions = {
         column: wanted for column, wanted in where.items() if column not in metrics.METRICS
     }
@@ -193,8 +196,10 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
         }
         values = values.loc[select(counting.assign(**computed), outcomes).index]
         values = values.reindex(runs.index)
+        # This includes runs that do not satisfy a condition on an outcome.
         if check.failures == "last":
             values = values.fillna(np.inf)
+        # Ranked runs are selected only now, after they were ranked among all.
         runs = select(runs.assign(value=values), conditions)
         # A share counts each run once.
         frames.append(runs if check.cells else runs[~is_repeated(runs)])
@@ -229,6 +234,7 @@ def _choose_failure_value(check: OfRuns) -> float:
         case "last":
             return np.inf
         case "count":
+            # Infinitely far on the side of the limit where the event is false.
             above = check.limit is not None and check.limit[0] in ("above", "at_least")
             return -np.inf if above else np.inf
     return np.nan
@@ -268,6 +274,7 @@ def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.Data
     """Average the values of each unit (row) in each cell (column); a run that counts as failed
     makes its unit fail.
     """
+    # A check without groups has one cell, whose name is empty.
     if column is None:
         return rows.groupby(unit)["value"].mean().to_frame("")
     return rows.groupby([unit, column])["value"].mean().unstack(column)

@@ -238,6 +238,7 @@ def compute_margin(check: OfRuns, comparison: Contrast) -> float:
     if not isinstance(margin, PublishedMargin):
         return margin
     published_margin = margin.published
+    # Relative effects and those of booleans are shares already.
     if not check.relative and not comparison.boolean:
         published_margin *= abs(
             float(
@@ -307,7 +308,9 @@ def draw_points(
             drawn = (
                 len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
             )
+            # Paired cells have one generator, so that the same units are drawn in each.
             own = "" if comparison.paired else f"/{comparison.cells[number]}"
+            # Seeds are names, so that no draw depends on the order of comparisons.
             rng = generator(f"{name}/{comparison.seed}/{stratum_name}{own}")
             total[:, number] += statistics.resample(statistic, values, drawn, rng)
     return total / len(comparison.strata)
@@ -324,6 +327,7 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
         and not check.relative
         and len(comparison.cells) == 2
     ):
+        # Resampling says nothing about events that never happened (module docstring).
         adjusted = [
             _compute_adjusted_difference(
                 *select_counted(stratum, comparison.paired), comparison.paired
@@ -334,6 +338,7 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
         return statistics.compute_normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
     ours = compute_points(comparison, statistic)
     gradient = load_kind(check).EFFECT.gradient(check, ours, comparison.cells)
+    # The normal approximation needs many values in every cell.
     if gradient is None or any(
         len(v) <= MOST_RESAMPLED
         for s in comparison.strata.values()
@@ -346,6 +351,7 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
             g * statistics.compute_influence(statistic, values)
             for g, values in zip(gradient, select_finite(stratum, comparison.paired))
         ]
+        # Paired cells vary together, so their influences are added unit by unit.
         parts = [np.sum(moved, axis=0)] if comparison.paired else moved
         variance += sum(part.var(ddof=1) / len(part) for part in parts)
     return statistics.compute_normal_draws(
@@ -363,9 +369,11 @@ def _compute_adjusted_difference(
     if not len(group) or not len(reference):
         return math.nan, math.nan
     if paired:
+        # Agresti and Min: one half for each of the four kinds of pair.
         n = len(group) + 2
         more, fewer = (np.sum(group > reference) + 0.5) / n, (np.sum(group < reference) + 0.5) / n
         return more - fewer, (more + fewer - (more - fewer) ** 2) / n
+    # Agresti and Caffo: one success and one failure more in each group.
     shares = [(values.sum() + 1) / (len(values) + 2) for values in (group, reference)]
     return shares[0] - shares[1], sum(
         share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, reference))
@@ -382,6 +390,7 @@ def judge_by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     finding = Finding(
         effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
     )
+    # Extremes depend on the number of runs.
     if comparison.paper_units is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
     effects = compute_effect(

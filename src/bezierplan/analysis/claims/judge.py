@@ -69,6 +69,7 @@ def judge_claims(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
     """
     claim_rows, check_rows = [], []
     for claim in material.study.claims:
+        # The first assignment is the primary variant.
         first, *_ = assignments = list_variants(claim)
         for assignment in assignments:
             row, details = _judge_variant(claim, first, assignment, material)
@@ -132,6 +133,7 @@ def _describe_verdict(
     verdict = verdicts.judge_marks(
         [entry.mark for entry in deciding], [entry.mark_family for entry in deciding], holds
     )
+    # Our runs are enough: what stays open is the chance of one experiment.
     if verdict == "undecided" and all(
         entry.finding.chance_known for entry in deciding if entry.mark_family == "?"
     ):
@@ -168,6 +170,7 @@ def _judge_checks(
             try:
                 judgements += _judge_check(number, check, claim, name, material)
             except Untestable as reason:
+                # Only a primary check that cannot be tested leaves the claim without a verdict.
                 if check.primary:
                     obstacle = obstacle or str(reason)
                 else:
@@ -217,6 +220,7 @@ def _mark_comparisons(findings: list[MarkedComparison]) -> list[MarkedComparison
     """Mark each comparison by its own p, the primary ones also by their p in the family."""
     p = np.array([entry.finding.p if entry.primary else math.nan for entry in findings])
     in_family = np.full(len(p), math.nan)
+    # Marks of comparisons without p do not follow from p, so these are not in the family.
     in_family[~np.isnan(p)] = verdicts.compute_family_p(p[~np.isnan(p)])
     return [
         entry._replace(
@@ -251,6 +255,7 @@ def _select_decisive(deciding: list[MarkedComparison], holds: str) -> MarkedComp
     against = [entry for entry in deciding if entry.mark_family == "-"]
     if not against:
         return max(deciding, key=find_p)
+    # Effects of different checks may have different units.
     first = [entry for entry in against if entry.number == against[0].number]
     return max(
         first,

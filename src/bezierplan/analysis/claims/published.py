@@ -38,6 +38,7 @@ def average_printed(
         for statistic in _list_statistics(check):
             if all(statistic in cell for cell in cells):
                 values, runs = np.array([cell[statistic][1:] for cell in cells]).T
+                # Ours are shares, so a count becomes one.
                 numbers = values / runs if statistic == "count" else values
                 known = None if np.isnan(runs).all() else int(np.nanmin(runs))
                 return effects.mark_events(check, numbers.reshape(-1, size).mean(axis=0)), known
@@ -94,6 +95,7 @@ def find_cell(
         if experiments != {table.experiment} or not set(table.keys) <= cell[0].keys():
             continue
         places = {tuple(row[key] for key in table.keys) for row in cell}
+        # The cell pools several rows of this table.
         if len(places) != 1:
             continue
         place = tuple(

@@ -16,8 +16,10 @@ def compare_ranks(group: np.ndarray, reference: np.ndarray, paired: bool) -> tup
         difference = group - reference
         if not difference.any():
             return 1.0, 0
+        # Pratt: zeros are ranked with the others, and have no sign.
         ranks = np.sign(difference) * stats.rankdata(np.abs(difference))
         return compute_p_of_signed_ranks(difference), int(np.sign(ranks.sum()))
+    # All values are equal, so nothing tells the groups apart.
     if np.ptp(np.concatenate([group, reference])) == 0:
         return 1.0, 0
     test = stats.mannwhitneyu(group, reference)

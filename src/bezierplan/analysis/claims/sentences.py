@@ -110,6 +110,7 @@ def explain_verdict(
     own_criterion: whether the limit is ours because the paper gives no number.
     """
     template = _TEMPLATES.get(row["test"], _describe_effect)
+    # The other templates print the effect.
     if row["effect"] is None and template is not _describe_function:
         template = _describe_effect
     notes = [
@@ -408,6 +409,7 @@ def describe_where_it_holds(findings: Sequence[MarkedComparison], labels: Mappin
 
 def _name_group(check: ClaimCheck, group: Any) -> Any:
     """Name a group; a number, which a file may hold as text, gets the name of its column."""
+    # The name of a method may look like a number.
     if isinstance(group, str) and check.cells != "method":
         with suppress(ValueError):
             group = float(group)
@@ -485,6 +487,7 @@ def _find_best_split(
         for each in comparisons:
             parts.setdefault(each.factors[factor], []).append(each.mark == sought)
         impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
+        # Equal impurities may differ in their last bits; then the first factor stays.
         if len(parts) > 1 and impurity < least - 1e-9:
             best, least = (factor, parts), impurity
     return best
@@ -494,6 +497,7 @@ def _describe_subset(factor: str, subset: list, every: list, labels: Mapping[str
     """Describe a subset of a factor's values."""
     others = [value for value in every if value not in subset]
     before = _choose_preposition(factor)
+    # A long list is told by the few that it lacks.
     few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
     if few and before.startswith("at "):
         return f"{before}other than {_join_names(others, labels)}"

@@ -34,6 +34,7 @@ def apply_variant(
     condition of `where`, and None there is no condition.
     """
     for column, chosen in assignment.items():
+        # Values are exchanged one by one: `Claim` accepts only lists that are equally long.
         pairs = dict(zip(convert_to_list(first[column]), convert_to_list(chosen), strict=True))
         if any(_replace_in_check(check, column, dict.fromkeys(pairs)) != check for check in checks):
             checks = [_replace_in_check(check, column, pairs) for check in checks]
@@ -52,6 +53,7 @@ def has_runs(check: ClaimCheck) -> bool:
 
 def _replace_in_check(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck:
     """Replace values in a check, wherever it names the column."""
+    # A variant changes a key of the check, its groups along the column, or a condition.
     keys = [column] if column in ("metric", "experiment") else []
     keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
     written = check.model_fields_set.intersection(keys)

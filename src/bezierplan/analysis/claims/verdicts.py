@@ -67,9 +67,11 @@ def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
     order = {number: 2.0 if math.isnan(each.p) else each.p for number, each in enumerate(tested)}
     if against:
         decisive = min(against, key=order.__getitem__)
+        # Bonferroni, because the surest of several was chosen.
         p, toward = min(1.0, len(tested) * tested[decisive].p), -1
     else:
         open_ones = [number for number, each in enumerate(tested) if not each.toward] or list(order)
+        # A negligible one comes first, since the sentence asks for a difference in each.
         decisive = max(open_ones, key=lambda number: (tested[number].negligible, order[number]))
         p, toward = tested[decisive].p, min(each.toward for each in tested)
     negligible = any(each.negligible and not each.toward for each in tested)

@@ -150,6 +150,7 @@ def compare(
     ours = tables.place_cells(ours, spec, list(results.problems))
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
     both = _join_published(ours, marked, key_columns, variant_of)
+    # The outer join sorts rows by name; the table has an order of its own.
     order = (
         tables.order_keys(both, spec, list(results.problems))
         .sort_values([*keys, "value", "metric", "statistic"])
@@ -194,6 +195,7 @@ def find_reasons(
         na_action="ignore",
     )
     reason_of = pd.Series("", numbers.index)
+    # Of several reasons the last one is told.
     for reason, whose in (
         (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
@@ -267,13 +269,16 @@ def _join_published(
     key_columns: the key columns of the published numbers.
     """
     theirs = published.rename(columns={"n": "n_published", "value": "value_published"})
+    # Keys that are merged must have one type.
     theirs = theirs.drop(columns="unit").astype({key: ours[key].dtype for key in key_columns})
+    # Our medians are named `unstated` where the paper does not state its statistic.
     names = dict(zip(_list_quantities(published), published["statistic"]))
     ours, theirs = (
         table.assign(statistic=[names.get(each, each[1]) for each in _list_quantities(table)])
         for table in (ours, theirs)
     )
     if "method" in key_columns:
+        # A variant is merged under the method whose published numbers it is compared with.
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
     both = ours.merge(theirs, how="outer", on=[*key_columns, "metric", "statistic"])
     if "method" in key_columns:
@@ -369,6 +374,7 @@ def round_range(
     unit = 10.0**-decimals
     ends = (
         end if math.isinf(end) else round(whole(end / unit) * unit, decimals)
+        # Half a unit belongs to a printed number; 1e-9 of a unit is for rounding.
         for end, whole in (
             (low, lambda end: math.ceil(end - 0.5 - 1e-9)),
             (high, lambda end: math.floor(end + 0.5 + 1e-9)),
@@ -394,6 +400,7 @@ def describe_range(number: Mapping[str, Any]) -> str:
 def format_range(number: Mapping[str, Any]) -> str:
     """Format our range in words; an end that our runs do not determine is left out."""
     ends = [number["low95_predicted"], number["high95_predicted"]]
+    # An empty end is one that our runs do not determine.
     low, high = (math.inf if end in ("", None) else float(end) for end in ends)
     if not math.isfinite(low):
         return f"at most {high:.10g}" if math.isfinite(high) else "any"

@@ -94,6 +94,7 @@ def compute_cells(
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
+    # Runs that drew nothing stand in every repeat, and count once.
     once = ~is_repeated(runs)
 
     @cache
@@ -157,6 +158,7 @@ def _compute_cell(
         decimals=entry.decimals,
         size=len(counted),
         numbers=np.sort(numbers),
+        # With problem and repeat, by which methods are drawn together (`wholes`).
         by_run=pd.Series(
             measures.values[of_entry],
             pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
@@ -213,6 +215,7 @@ def build_pivot(
     decimals = table["decimals"]
     if spec.printed and published is not None:
         digits = published["as_printed"].map(possible.count_decimals)
+        # The most frequent number of decimals of a metric; of equally frequent ones the larger.
         usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
         decimals = table["metric"].map(usual).fillna(decimals).astype(int)
         counted = table["statistic"] == "count"
@@ -229,6 +232,7 @@ def build_pivot(
     index = _build_index(rows.rename(columns=labels))
     columns = pd.Index([": ".join(levels) for levels in heads.itertuples(index=False)])
     wide = lay_out(table, texts, index, columns)
+    # A table of the paper's form has the paper's columns alone.
     if spec.printed:
         return wide
     counted, asked = (
@@ -276,6 +280,7 @@ def _list_levels(spec: Pivot) -> tuple[list[str], list[str]]:
         len(entry.statistics) > 1 for entry in spec.values
     ):
         columns.append("statistic")
+    # A table without columns gets one, named by its only value.
     if "value" not in index + columns and (len(spec.values) > 1 or not columns):
         columns.insert(0, "value")
     return index, columns

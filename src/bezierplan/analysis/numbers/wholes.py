@@ -82,16 +82,20 @@ def draw_means(
     """
     parts = group["by_run"].to_list()
     if together:
+        # One table, so that a repeat is drawn with the runs of all methods.
         parts = [pd.concat(parts, axis=1, join="inner")]
     size = min(int(group["n_published"].fillna(1).min()), statistics.MOST_PREDICTED)
     means = []
     for values in (part.to_numpy().reshape(len(part), -1) for part in parts):
+        # The mean of the runs that count is that of values, 0 where there is none, over the share
+        # that has one.
         sums = np.hstack([np.nan_to_num(values), ~np.isnan(values)])
         total, share = np.split(statistics.draw_predictions("mean", sums, size, rng), 2, axis=1)
         with np.errstate(invalid="ignore"):  # of an experiment none of whose runs counts
             means.append(total / share)
     table = np.round(np.hstack(means), group["decimals"].iloc[0])
     tail = statistics.compute_expanded_tail(min(map(len, parts)))
+    # An experiment that lacks a mean prints no column.
     return table[~np.isnan(table).any(axis=1)], tail
 
 

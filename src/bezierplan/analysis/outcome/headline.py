@@ -41,6 +41,7 @@ def describe_claims(claims: pd.DataFrame) -> str:
         return ""
     groups = words.list_groups("claim")
     counts = claims["verdict"].map(groups).value_counts().reindex([*groups.values()], fill_value=0)
+    # A group of several verdicts stands there once for each.
     counts = counts[~counts.index.duplicated()]
     return (
         f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "

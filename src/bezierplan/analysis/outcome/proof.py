@@ -18,6 +18,7 @@ from bezierplan.running.recheck import Difference, compute_sha256
 LIST, PAGE = "verified.json", "index.html"
 """The file that lists the digests of all others, and the page that names its own."""
 
+# Rules of all that follows from runs; runs themselves are not made again.
 _RULES = (
     "problems",
     "bounds",
@@ -60,6 +61,7 @@ def read_list(folder: Path) -> FileList:
         found = FileList(dict(content["sha256"]), accounts, dict(content["versions"]))
     except (KeyError, TypeError, ValueError):
         return FileList({}, {}, {}, "not a list of digests")
+    # The page holds the digest of its list, so a list of another page is told.
     if text and compute_sha256(file) not in text:
         return found._replace(fault=f"not the list that {PAGE} names")
     return found
@@ -121,6 +123,7 @@ def find_differences(
             (again / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(folder / name, again / name)
         files = [name for name in there if made[name]]
+        # Files above the studies depend on all that the page shows, so these are made together.
         for group in (shown, *([key] for key in places if key not in shown)):
             own = [
                 again / name

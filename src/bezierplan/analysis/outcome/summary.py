@@ -72,11 +72,13 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         listed = list(rows.iterrows())
         for (_, earlier), (index, row) in itertools.combinations(listed, 2):
+            # The first table that prints a number keeps it.
             if earlier["table"] != row["table"] and _is_same_place(earlier, row, keys):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
     for _, rows in counts.groupby(place, dropna=False, sort=False):
+        # The last of them follows from the others.
         if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
             counted[numbers.index.get_loc(rows.index[-1])] = False
     return counted

@@ -138,8 +138,10 @@ def _compare_readings(fact: Fact, rows: pd.DataFrame, by_reading: pd.DataFrame) 
         return []
     own = select(by_reading, {"id": rows["id"].iloc[0]})
     verdict = "verdict"
+    # A fact about one check depends on the verdict on that check.
     if fact.of == "claim_checks":
         own, verdict = own[own["check"] == rows["check"].iloc[0]], "verdict_on_check"
+    # A reading that leaves the claim undecided has no side.
     sides = own.drop_duplicates("reading").set_index("reading")[verdict].map(SIDES).dropna()
     turned = sides[sides != sides[DEFAULT]] if DEFAULT in sides else sides[:0]
     if {*turned.index} == {*fact.turned_by}:

@@ -121,17 +121,20 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
     if effects.choose_statistic(check) in WITHOUT_INTERVAL:
         finding = effects.judge_by_draws(check, comparison, name)
+        # Below the margin the sentence is open, however often it holds.
         return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
     side, least = effects.SIDES[check.direction], check.least
     margin = effects.compute_margin(check, comparison)
     draws = effects.draw_effects(check, comparison, name)
     low, high = effects.compute_interval_of_draws(draws)
     toward = np.sign(side * ours - least)
+    # A claimed least effect takes the place of the margin.
     if not least and abs(ours) < margin:
         toward = 0
     (stratum, *others) = comparison.strata.values()
     group, reference = effects.select_counted(stratum, comparison.paired)
     named = check.statistic
+    # The tests below are for one condition, and for ranks, means or unshifted booleans.
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
         p = effects.compute_p(side * draws - least)
     elif comparison.boolean:
@@ -187,6 +190,7 @@ def _compute_p_of_means(group: np.ndarray, reference: np.ndarray, paired: bool) 
     from scipy import stats
 
     spread = (group - reference).std() if paired else group.std() + reference.std()
+    # Equal values may differ in their last bits, so no spread is not exactly 0.
     if spread <= 1e-12 * max(np.abs(group).max(), np.abs(reference).max(), 1e-300):
         return compare_ranks(group, reference, paired)[0]
     # scipy warns of a sample that is constant, as a count that settings fix: its variance is 0.
@@ -206,6 +210,7 @@ def _shift_other(
     both by one beyond any difference.
     """
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
+    # Ranks need the order alone.
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
     move = effects.SIDES[check.direction] * check.least
@@ -245,6 +250,7 @@ def _compute_effect_size(
             odds = np.array([a * d, b * c], dtype=float)
         with np.errstate(divide="ignore", invalid="ignore"):
             return "odds ratio", float(odds[0] / odds[1])
+    # Pairs of values say nothing about a spread or an extreme.
     if effects.choose_statistic(check) not in ("mean", "median"):
         return "difference", ours
     if comparison.paired:

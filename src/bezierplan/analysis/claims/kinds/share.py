@@ -129,6 +129,7 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
             f"{name}: {check.metric} has values other than true and false; its check needs an event"
         )
     finding = Finding(k / n, "share", k / n, n=n)
+    # The sentence is about these runs alone, so it holds or does not: nothing is tested.
     if check.pick:
         return finding._replace(mark="+" if _is_claimed_by(check, finding) else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
@@ -163,6 +164,7 @@ def _judge_by_example(check: Options, finding: Finding, paper_units: int | None)
         low, chance, high = (
             share**paper_units for share in (finding.low95, finding.effect, finding.high95)
         )
+        # Refuted if all of the paper's runs are unlikely to have the event even at the upper end.
         mark = "+" if low > effects.ALPHA else "-" if high < effects.ALPHA else "?"
         reason = f"the chance of {paper_units} of {paper_units} is {chance:.2g}"
         return finding._replace(mark=mark, reason=reason)
@@ -185,6 +187,7 @@ def _test_over_conditions(
     mean = float(shares.mean())
     toward = int(np.sign(side * (mean - threshold)))
     finding = finding._replace(effect=mean, effect_size=mean, n=len(shares), toward=toward)
+    # Student's t is undefined without spread.
     if not np.ptp(shares):
         return finding._replace(low95=mean, high95=mean, p=0.0 if toward else 1.0)
     test = stats.ttest_1samp(shares, threshold)
