@@ -104,7 +104,7 @@ def main() -> None:
 def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts.FilledText]:
     """Return the answer to each paper from the tables of a folder. files: by study, if any."""
     return {
-        key: texts.fill(texts.read(file), texts.read_tables(folder, key))
+        key: texts.fill(texts.read(file), texts.read_outcome_tables(folder, key))
         for key, file in files.items()
         if file
     }

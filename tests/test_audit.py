@@ -317,7 +317,7 @@ def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_dig
         f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"
     )
     bounds = pd.DataFrame({"bound": [bound]}, index=["across"])
-    (row,) = audit.check_bounds("table1", audit.read_printed_numbers(str(file)), bounds, {})
+    (row,) = audit.check_lengths("table1", audit.read_printed_numbers(str(file)), bounds, {})
     assert bool(row["consistent"]) == consistent
     assert (row["printed"], row["limit"]) == (float(printed), bound)
     assert row["place"].startswith("problem=across, method=plain")

@@ -66,7 +66,7 @@ def test_the_example_agrees_with_the_text():
 
 @pytest.fixture(scope="module")
 def rows():
-    return audit.build_table("elhoseny2017", own_audit.audit(PUBLISHED))
+    return audit.build_audit("elhoseny2017", own_audit.audit(PUBLISHED))
 
 
 def broken(rows, rule):

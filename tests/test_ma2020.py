@@ -119,7 +119,7 @@ def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
 
 
 def test_audit():
-    rows = audit.build_table("ma2020", own_audit.audit(PUBLISHED))
+    rows = audit.build_audit("ma2020", own_audit.audit(PUBLISHED))
     wrong = rows[~rows["consistent"].astype(bool)]
     means = wrong[wrong["rule"].str.contains("mean length")]
     assert means["printed"].to_list() == [32.9973]  # of BCA-Q, above that of ASFA-GA

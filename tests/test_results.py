@@ -130,7 +130,7 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     )
 
     def audited(table, bounds, primary):
-        return [row["consistent"] for row in audit.check_bounds("t", table, bounds, primary)]
+        return [row["consistent"] for row in audit.check_lengths("t", table, bounds, primary)]
 
     assert audited(table, one, {}) == [False, True]
     assert audited(table, two, {}) == []
@@ -155,5 +155,5 @@ def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent)
         }
     )
     bounds = pd.DataFrame({"bound": [8.9549]}, index=["disc"])
-    (row,) = audit.check_bounds("t", table, bounds, {})
+    (row,) = audit.check_lengths("t", table, bounds, {})
     assert row["consistent"] == consistent

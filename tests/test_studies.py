@@ -341,7 +341,7 @@ def test_audit_of_tharwat2018():
     specs = jobs.build_audit(study, "full").tables
     tables = published("tharwat2018")
     compared = {name: audit.read_printed_numbers(study.find_published_file(name)) for name in specs}
-    rows = audit.build_table(
+    rows = audit.build_audit(
         "tharwat2018", rules.check_rules(tables) + audit.check_any_paper(compared, specs)
     )
     wrong = rows[rows["consistent"].map(str) == "False"]

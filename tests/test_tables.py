@@ -545,14 +545,14 @@ def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
     file = tmp_path / "table1.csv"
     file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
     spec = described({"kind": "transcribed", "published": "table1.csv"})
-    table = listing.build_table(spec, {"table1": str(file)}, {})
+    table = listing.build_listing(spec, {"table1": str(file)}, {})
     assert table.to_csv(index=False) == file.read_text()
 
 
 def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
     file = tmp_path / "table2.csv"
     file.write_text("method,value\nplain,2.5\n")
-    table = listing.build_table(
+    table = listing.build_listing(
         described({"kind": "function", "function": "twice"}),
         {"table2": str(file)},
         {"twice": lambda tables: 2 * tables["table2"][["value"]]},

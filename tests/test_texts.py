@@ -15,7 +15,7 @@ ANSWERED = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
 @pytest.fixture(scope="module")
 def ma2020():
     file = TREE / "config/studies/ma2020/verdict.yaml"
-    return texts.read(file), texts.read_tables(KEPT, "ma2020")
+    return texts.read(file), texts.read_outcome_tables(KEPT, "ma2020")
 
 
 @pytest.mark.parametrize("study", ANSWERED)

@@ -438,7 +438,7 @@ def check(problem: Problem, path: Path) -> Judgement:
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
     # The verdict is about the plain copy; the caller gets the path that was given.
-    return Judgement(**answers.judge_path(*_bound(problem), plain) | {"path": path})
+    return Judgement(**answers.compute_judgement(*_bound(problem), plain) | {"path": path})
 
 
 def plan(
@@ -605,7 +605,7 @@ def _answer(
     answered: list[Answer] = []
     try:
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
-            judged = answers.judge_path(
+            judged = answers.compute_judgement(
                 run.problem, run.bound, plan.path
             ) | answers.list_planner_fields(plan)
             # This checks our own geometry, not the planner.

@@ -290,7 +290,7 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escape(
+    return markdown.escape_rst(
         captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale).write()
     )
 

@@ -25,7 +25,7 @@ OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int,
 """Fields that are the planner's own, beside the history, and their types."""
 
 
-def judge_path(
+def compute_judgement(
     problem: Problem, shortest: shortest_paths.Bound, path: Path | None
 ) -> dict[str, Any]:
     """Judge a path with exact geometry and return the fields of `api.Judgement`; without a path,
@@ -66,7 +66,7 @@ def judge_path(
 
 
 def list_planner_fields(plan: Plan) -> dict[str, Any]:
-    """Return the fields of `api.Answer` that are the planner's own."""
+    """List the fields of `api.Answer` that are the planner's own, with their values."""
     own = {field: getattr(plan, field) for field in (*OF_PLANNERS, "history")}
     return own | {"turning_radius": plan.extra.get("least_radius", math.nan)}
 
@@ -75,7 +75,7 @@ def judge_run(results: Results, name: str) -> dict[str, Any]:
     """Read one run from its results, by its name, and return the fields of `api.Answer`."""
     row, (study, _, _, method, _) = results.runs.iloc[0], name.split("/")
     problem = results.problems[row["problem"]]
-    return judge_path(
+    return compute_judgement(
         problem,
         shortest_paths.shortest_path(problem),
         restore_path(row["path_curve"], row["path_points"]),

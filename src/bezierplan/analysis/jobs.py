@@ -49,7 +49,7 @@ class Job(ABC):
 
     @staticmethod
     def write(table: Any, file: str) -> None:
-        """Write a table without an index."""
+        """Write a table to a csv file, without its index."""
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
 
     def __str__(self) -> str:
@@ -90,7 +90,7 @@ class Job(ABC):
 
     @cached_property
     def key(self) -> str:
-        """Return the digest of the account."""
+        """Return the digest of the account, under which the opened files are kept."""
         return hashlib.sha256(repr(self.account).encode()).hexdigest()[:16]
 
     @property
@@ -105,7 +105,7 @@ class Job(ABC):
 
 @dataclass(frozen=True)
 class Problems(Job):
-    """The problems of an experiment: drawn once, shared by all its methods."""
+    """The job that builds the problems of an experiment: drawn once, shared by all its methods."""
 
     descriptions: Descriptions
     folder: str
@@ -124,8 +124,8 @@ class Problems(Job):
 
 @dataclass(frozen=True)
 class Bounds(Job):
-    """The exact shortest path of each problem of an experiment; for drives, the least that no robot
-    can beat.
+    """The job that computes the exact shortest path of each problem; for drives, the arrival that
+    no robot can beat.
     """
 
     def run(self, input_files, output_files):
@@ -138,7 +138,7 @@ class Bounds(Job):
 
 @dataclass(frozen=True)
 class Runs(Job):
-    """A method on every condition of an experiment, one block of repeats."""
+    """The job that runs a method under every condition of an experiment, one block of repeats."""
 
     chunk: Chunk
 
@@ -162,7 +162,7 @@ class Runs(Job):
 
 @dataclass(frozen=True)
 class Recheck(Job):
-    """The runs of some methods in an experiment, judged again from their rows, in a process that no
+    """The job that judges the runs of some methods again from their rows, in a process that no
     planner was in, before anything reads them.
     """
 
@@ -179,7 +179,9 @@ class Recheck(Job):
 
 @dataclass(frozen=True)
 class TableOfRuns(Job):
-    """A table of runs, and its comparison with published numbers, one by one and as wholes."""
+    """The job that makes a table of runs, and compares it with published numbers, one by one and as
+    wholes.
+    """
 
     name: str
     """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
@@ -235,7 +237,9 @@ class TableOfRuns(Job):
 
 @dataclass(frozen=True)
 class TableWithoutRuns(Job):
-    """A table that a paper prints, or that a function computes from printed numbers."""
+    """The job that makes a table which a paper prints, or which a function computes from printed
+    numbers.
+    """
 
     spec: TableEntry
     """The table without its title."""
@@ -250,12 +254,12 @@ class TableWithoutRuns(Job):
             inputs.group_by_table(input_files.sources),
             study_code.load_functions(self.code),
         )
-        self.write(listing.build_table(self.spec, published, functions), output_files[0])
+        self.write(listing.build_listing(self.spec, published, functions), output_files[0])
 
 
 @dataclass(frozen=True)
 class Claims(Job):
-    """The claims of a study, judged on the runs of some experiments."""
+    """The job that judges the claims of a study on the runs of some experiments."""
 
     study: StudyForClaims
     repeats: dict[str, int]
@@ -305,7 +309,7 @@ class Claims(Job):
 
 @dataclass(frozen=True)
 class Audit(Job):
-    """A paper's own numbers, checked against each other and against exact bounds."""
+    """The job that checks a paper's own numbers against each other and against exact bounds."""
 
     study: str
     tables: dict[str, Pivot]
@@ -331,7 +335,9 @@ class Audit(Job):
 
 @dataclass(frozen=True)
 class MethodsTable(Job):
-    """The results of all studies' methods on each problem, beside the exact shortest path."""
+    """The job that measures all studies' methods on each problem, beside the exact
+    shortest path.
+    """
 
     proposed: dict[str, str | None]
     """By study, the method that its paper proposes."""
@@ -361,7 +367,7 @@ class MethodsTable(Job):
 
 @dataclass(frozen=True)
 class Summary(Job):
-    """The numbers and claims of all studies."""
+    """The job that gathers the numbers and claims of all studies."""
 
     tables: list[tuple[str, str]]
     """Study and table of each comparison with published numbers, in order."""
@@ -383,8 +389,8 @@ class Summary(Job):
 
 @dataclass(frozen=True)
 class Verification(Job):
-    """The verdicts of all rechecks on what the page shows, and the digest of every file, with the
-    account of the job that makes it.
+    """The job that lists the verdicts of all rechecks behind the page, and the digest of every
+    file, with the account of the job that makes it.
     """
 
     folder: str

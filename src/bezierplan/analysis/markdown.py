@@ -19,7 +19,7 @@ def write_table(table: pd.DataFrame) -> str:
     )
 
 
-def escape(text: str) -> str:
+def escape_rst(text: str) -> str:
     """Escape text as one line of literal reStructuredText: no markup, no directive, no HTML."""
     return "".join(
         f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign

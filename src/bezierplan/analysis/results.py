@@ -189,7 +189,7 @@ def read_printed_numbers(file: str) -> pd.DataFrame:
     return table
 
 
-def list_keys(numbers: pd.DataFrame) -> list[str]:
+def list_key_columns(numbers: pd.DataFrame) -> list[str]:
     """List the columns that tell rows of published numbers apart: those left of `metric`."""
     return numbers.columns[: numbers.columns.get_loc("metric")].to_list()
 

@@ -45,7 +45,7 @@ Columns = build_list_type(Annotated[Name, Names("level")], least=0)
 
 
 class TableEntry(Model):
-    """Keys common to all kinds of table."""
+    """The keys that all kinds of table share."""
 
     title: Line = Field(description="one line")
     note: Line = Field(None, description="a footnote, one line; left out: none")
@@ -234,7 +234,7 @@ class Transcript(TableEntry):
 
 
 class FunctionTable(TableEntry):
-    """The result of a function in the study's module."""
+    """A table that a function of the study's module computes."""
 
     kind: Literal["function"] = Field(description="function")
     function: Function = Field(

@@ -53,7 +53,7 @@ def main(
     """
     asked = api.problems(experiment)
     if problems:
-        benchmark.list_problems(asked).to_csv(problems, index=False)
+        benchmark.describe_problems(asked).to_csv(problems, index=False)
     stored, made = benchmark.read_stored(experiment), {}
     for candidate in candidates:
         made[f"here:{candidate}"] = (
@@ -79,7 +79,7 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     for name, path, evaluations in benchmark.read_paths(file, problems):
         problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
         check_ends(path, problem)
-        judged = answers.judge_path(problem, shortest_path(problem), path)
+        judged = answers.compute_judgement(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
         answers_read.append(
             api.Answer(**judged, **answers.list_planner_fields(plan), method=str(file))

@@ -51,7 +51,7 @@ def main(
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
     places = stored.read_places(folder, read_config(), map(find_study_path, studies))
-    config = proof.select_studies(read_config(), [*places.values()])
+    config = proof.keep_studies(read_config(), [*places.values()])
     at = stored.list_places(reading.load(reading.read_config(config)))
     contents = proof.read_list(folder)
     makers = stored.find_jobs(at, folder, contents.digests)

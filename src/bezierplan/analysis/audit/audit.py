@@ -6,7 +6,7 @@ consistent (whether the number obeys the rule; empty if the rule cannot tell), a
 rules that hold for any paper: how the number was checked).
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
-(`metrics.Metric`): `check_cells` checks the statistics of one cell, `check_ranks` mean ranks,
+(`metrics.Metric`): `check_statistics` checks the statistics of one cell, `check_ranks` mean ranks,
 `check_orders` the order of rows, `check_middles` means of lengths within their ranges,
 `check_digits` all decimals.
 `analysis.possible` has the closed forms.
@@ -22,9 +22,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import identified, possible
-from bezierplan.analysis.audit.rows import COLUMNS, build_row, describe_cell, merge_rows
+from bezierplan.analysis.audit.rows import COLUMNS, build_audit_row, describe_cell, merge_rows
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
-from bezierplan.analysis.results import group_rows, list_keys, read_printed_numbers
+from bezierplan.analysis.results import group_rows, list_key_columns, read_printed_numbers
 from bezierplan.analysis.table_kinds import Monotone, Pivot
 from bezierplan.running import problems
 from bezierplan.running.inputs import Files
@@ -57,7 +57,7 @@ DIGITS_LEVEL = 0.01
 """Decimals are inconsistent if chance makes digits as uneven less often."""
 
 
-def check_bounds(
+def check_lengths(
     item: str, table: pd.DataFrame, bounds: pd.DataFrame, primary: dict[str, Any]
 ) -> Iterator[dict]:
     """Check every published length against the exact shortest length of its problem.
@@ -79,9 +79,9 @@ def check_bounds(
             problem = bounds.index[0]
         bound = bounds["bound"].get(problem, math.nan)
         if not math.isnan(bound):
-            where = describe_cell(row, [*list_keys(table), "metric", "statistic"])
+            where = describe_cell(row, [*list_key_columns(table), "metric", "statistic"])
             fits = possible.read_printed(row["as_printed"]).high >= bound
-            yield build_row(item, where, rule, row["value"], bound, fits)
+            yield build_audit_row(item, where, rule, row["value"], bound, fits)
 
 
 # Rules that hold for any paper
@@ -100,19 +100,19 @@ def check_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) ->
     rows = []
     for name, table in tables.items():
         picks = [entry.metric for entry in specs[name].values if entry.where]
-        rows += check_cells(name, table, picks)
+        rows += check_statistics(name, table, picks)
         rows += check_ranks(name, table, specs[name].across)
         for rule in specs[name].monotone:
             rows += check_orders(name, table, rule)
     return [*merge_rows(rows), *check_middles(tables), *check_digits(tables)]
 
 
-def check_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
+def check_statistics(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
     """Check the statistics of each metric in each place of a table beside each other.
 
     picks: metrics for which only some of the runs count.
     """
-    keys = list_keys(table)
+    keys = list_key_columns(table)
     for rows in group_rows(table, [*keys, "metric"]):
         where, metric = (
             describe_cell(rows.iloc[0], [*keys, "metric"]),
@@ -129,7 +129,7 @@ def check_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[di
         )
         for name, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
             of_number = f"{where}, statistic={name}"
-            yield build_row(item, of_number, rule, float(texts[name]), limit, fits, told)
+            yield build_audit_row(item, of_number, rule, float(texts[name]), limit, fits, told)
 
 
 def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iterator[tuple]:
@@ -195,7 +195,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
     columns: the key columns within whose values rows are ranked; columns that the file lacks do not
     matter.
     """
-    keys = list_keys(table)
+    keys = list_key_columns(table)
     ranks = table[(table["statistic"] == "mean") & (table["metric"] == "rank")]
     within = [column for column in columns if column in keys]
     for group in group_rows(ranks, within):
@@ -207,7 +207,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
         arithmetic = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
         location = describe_cell(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        yield build_row(
+        yield build_audit_row(
             item, location, rule, added, total, possible.can_be_ranks(numbers), arithmetic
         )
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
@@ -215,7 +215,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             arithmetic = f"1 <= {row['as_printed']} <= {count}"
             of_row = describe_cell(row, [*keys, "metric"])
-            yield build_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
+            yield build_audit_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
         # The test needs true mean ranks, all of the same number of runs.
         if possible.can_be_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
@@ -230,7 +230,9 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
                 f"the largest difference is {apart:.2g}, the critical one {critical:.3g}; "
                 f"p is below {LEVEL:g} from {least} runs on"
             )
-            yield build_row(item, location, rule, apart, critical, bool(p < LEVEL), arithmetic)
+            yield build_audit_row(
+                item, location, rule, apart, critical, bool(p < LEVEL), arithmetic
+            )
 
 
 def compute_friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:
@@ -256,7 +258,7 @@ def compute_friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, fl
 def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     """Check numbers that must rise or fall along a column, each beside the one before it."""
     numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
-    keys = list_keys(table)
+    keys = list_key_columns(table)
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
@@ -267,7 +269,7 @@ def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dic
             fits = possible.is_in_order(*(pair if rule.direction == "up" else pair[::-1]))
             where = describe_cell(row, [*keys, "metric", "statistic"])
             told = f"{before['as_printed']} {sign} {row['as_printed']}"
-            yield build_row(item, where, words, row["value"], before["value"], fits, told)
+            yield build_audit_row(item, where, words, row["value"], before["value"], fits, told)
 
 
 def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
@@ -297,7 +299,7 @@ def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         told = f"{apart:.3g} ranges, normal ones {median:.3g}; p = {p:.2g}"
         where = f"{count} means between minimum and maximum"
         items = ", ".join(wide.index.unique("item"))
-        yield build_row(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
+        yield build_audit_row(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
 
 
 def _measure_from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -339,7 +341,7 @@ def check_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     items = ", ".join(every["item"].unique())
     where = f"{len(digits)} decimals of {len(every)} numbers"
     fits = bool(chance.pvalue >= DIGITS_LEVEL)
-    yield build_row(items, where, rule, max(counts), len(digits) / 10, fits, told)
+    yield build_audit_row(items, where, rule, max(counts), len(digits) / 10, fits, told)
 
 
 def check_paper(
@@ -359,15 +361,15 @@ def check_paper(
         # Bounds of maps that a paper does not print say nothing of its numbers.
         if name not in job.reconstructed:
             bounds = pd.read_parquet(experiment_files[spec.experiment].bounds).set_index("problem")
-            rows += check_bounds(name, published[name], bounds, spec.primary)
+            rows += check_lengths(name, published[name], bounds, spec.primary)
     rows += check_any_paper({name: published[name] for name in job.tables}, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
             made, _ = problems.read(experiment_files[spec.experiment].problems)
             rows += identified.check_declared_paths(name, published[name], spec.identify, made)
-    return build_table(job.study, rows + of_paper(published))
+    return build_audit(job.study, rows + of_paper(published))
 
 
-def build_table(study: str, rows: list[dict]) -> pd.DataFrame:
+def build_audit(study: str, rows: list[dict]) -> pd.DataFrame:
     """Build a table with `COLUMNS` from the rows of a study's audit."""
     return pd.DataFrame([{"study": study, **row} for row in rows], columns=COLUMNS)

@@ -20,8 +20,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import possible
-from bezierplan.analysis.audit.rows import build_row, describe_cell
-from bezierplan.analysis.results import list_keys
+from bezierplan.analysis.audit.rows import build_audit_row, describe_cell
+from bezierplan.analysis.results import list_key_columns
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.grid import Grid
@@ -192,7 +192,7 @@ def check_declared_paths(
     published: as from `results.read_printed_numbers`. problems: by name; a number's problem is in
     its column `problem`. A number that no path has is no contradiction.
     """
-    keys = list_keys(published)
+    keys = list_key_columns(published)
     for entry in entries:
         tries = []
         what = (
@@ -215,7 +215,9 @@ def check_declared_paths(
                 row, [*keys, "metric", *(["statistic"] if entry.statistic else [])]
             )
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
-            yield build_row(item, location, rule, row["value"], limit, fits, describe_paths(path))
+            yield build_audit_row(
+                item, location, rule, row["value"], limit, fits, describe_paths(path)
+            )
         if tries:
             matched = sum(bool(path.paths) for path in tries)
             chance = compute_chance_of_at_least(matched, [path.chance for path in tries])
@@ -228,7 +230,7 @@ def check_declared_paths(
                 if wanted
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tries) or None
-            yield build_row(item, location, rule, matched, len(tries), fits, told)
+            yield build_audit_row(item, location, rule, matched, len(tries), fits, told)
 
 
 def compute_chance_of_at_least(count: int, chances: list[float]) -> float:

@@ -19,7 +19,7 @@ def describe_cell(row: Mapping, keys: Iterable[str]) -> str:
     return ", ".join(f"{key}={row[key]}" for key in keys)
 
 
-def build_row(
+def build_audit_row(
     item: str,
     location: str,
     rule: str,
@@ -55,7 +55,7 @@ def _merge_rows_of_rule(rule: str, rows: list[dict]) -> list[dict]:
         return rows
     items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))
     count, every = len(obeyed), len(rows)
-    row = build_row(items, f"{count} of {every} numbers", rule, count, every, True)
+    row = build_audit_row(items, f"{count} of {every} numbers", rule, count, every, True)
     return [*(other for other in rows if other["consistent"] is not True), row]
 
 
@@ -63,6 +63,6 @@ def compare_with_limit(
     item: str, location: str, rule: str, printed: float, relation: str, limit: float
 ) -> dict:
     """Build the row of a number that should be <, <=, ==, >= or > than its limit."""
-    return build_row(
+    return build_audit_row(
         item, location, rule, printed, limit, bool(RELATIONS[relation](printed, limit))
     )

@@ -168,8 +168,8 @@ def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
 
 
 class Effect(NamedTuple):
-    """How a kind of test computes an effect from point values of cells; all functions take the
-    check first.
+    """The functions by which a kind of test computes an effect from point values of cells; all take
+    the check first.
 
     of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and
     names -> how the effect changes with each value (k,), None without a linear approximation.

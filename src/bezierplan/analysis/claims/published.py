@@ -9,7 +9,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import OfRuns
-from bezierplan.analysis.results import list_keys
+from bezierplan.analysis.results import list_key_columns
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -71,7 +71,7 @@ def select_metric(
     table_number: int, experiment: str, table: pd.DataFrame, metric: str
 ) -> PrintedTable:
     """Select the numbers of a metric from a table of published numbers."""
-    keys = list_keys(table)
+    keys = list_key_columns(table)
     rows = table[table["metric"] == metric].dropna(subset=keys)
     cells: dict[tuple, PrintedCell] = {}
     for number, row in zip(rows.index, rows.to_dict("records")):

@@ -82,7 +82,7 @@ def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path 
     return paths
 
 
-def list_problems(problems: Mapping[str, Problem]) -> pd.DataFrame:
+def describe_problems(problems: Mapping[str, Problem]) -> pd.DataFrame:
     """List the problems, a row each: its ends, its map as JSON, and the exact shortest length."""
     rows = [
         {

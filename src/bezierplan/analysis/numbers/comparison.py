@@ -47,7 +47,13 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.numbers import tables
-from bezierplan.analysis.results import Results, group_rows, list_keys, read_printed_numbers, select
+from bezierplan.analysis.results import (
+    Results,
+    group_rows,
+    list_key_columns,
+    read_printed_numbers,
+    select,
+)
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.seeds import generator
@@ -139,7 +145,7 @@ def compare(
     and baselines get rows, whether or not the table shows them. name: `study/table`, which seeds
     each row's random draws. reconstructed, fitted: as in `find_reasons`.
     """
-    key_columns = list_keys(published)
+    key_columns = list_key_columns(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
     methods, beside = convert_to_list(spec.where.get("method", [])), []
     if methods and "method" in keys:
@@ -179,11 +185,12 @@ def compare(
 def find_reasons(
     numbers: pd.DataFrame, spec: Pivot, reconstructed: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
-    """Return why each number of a table proves nothing of the paper, wherever it lies; empty if it
-    may: our definition or our map may be wrong, or something was fitted to the number.
+    """Find the reason why each number of a table proves nothing of the paper, wherever it lies;
+    empty if it may prove something.
 
-    reconstructed: problems on maps that the paper does not print. fitted: metric -> which numbers
-    of the table are such (column -> value or list of values).
+    Our definition or our map may be wrong, or something was fitted to the number. reconstructed:
+    problems on maps that the paper does not print. fitted: metric -> which numbers of the table are
+    such (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
     printed = numbers.assign(method=numbers.get("printed_method"))
@@ -207,7 +214,9 @@ def find_reasons(
 
 
 def find_position(published: float, low: float, high: float) -> str:
-    """Return where a published number lies beside our range; NaN is no range."""
+    """Find the position of a published number beside our range: below, inside or above; no range if
+    an end is NaN.
+    """
     if published < low:
         return "below"
     if published > high:

@@ -10,7 +10,7 @@ from bezierplan.analysis.results import read_published_table
 from bezierplan.analysis.table_kinds import FunctionTable, Transcript
 
 
-def build_table(
+def build_listing(
     spec: Transcript | FunctionTable,
     files: Mapping[str, str],
     functions: Mapping[str, Callable[..., pd.DataFrame]],

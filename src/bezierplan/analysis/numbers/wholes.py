@@ -19,7 +19,7 @@ import pandas as pd
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit.rows import describe_cell
 from bezierplan.analysis.numbers import comparison, tables
-from bezierplan.analysis.results import Results, list_keys
+from bezierplan.analysis.results import Results, list_key_columns
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.workspaces.seeds import generator
 
@@ -51,7 +51,7 @@ def compare_columns(
     numbers: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
     whether runs with equal repeat numbers start alike.
     """
-    keys = list_keys(numbers)
+    keys = list_key_columns(numbers)
     means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["low95_predicted", "value_ours"]).astype(
         dict.fromkeys(keys, object)

@@ -92,7 +92,7 @@ def describe_version() -> str:
     return f"{version}, commit {found.stdout.strip()}"
 
 
-def select_studies(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
+def keep_studies(config: dict[str, Any], studies: list[str]) -> dict[str, Any]:
     """Return a configuration with some of its studies alone, given by name or folder."""
     names = {Path(study).resolve().name for study in studies}
     settings = {name: each for name, each in config.get("settings", {}).items() if name in names}
@@ -130,7 +130,7 @@ def find_differences(
                 for name in files
                 if (name.split("/")[0] if "/" in name else shown[0]) in group
             ]
-            studies = select_studies(config, [places[key] for key in group])
+            studies = keep_studies(config, [places[key] for key in group])
             faults += [
                 Difference(line, "what follows cannot be made again")
                 for line in _make_again(own, studies, away, processes)

@@ -75,7 +75,7 @@ class FilledText(NamedTuple):
 
 
 def read(file: str | Path) -> Text:
-    """Read the answer of a study. Raises Fault."""
+    """Read the answer of a study from its `verdict.yaml`. Raises Fault."""
     return parse(Text, checked.read(Path(file)), str(file))
 
 
@@ -107,7 +107,7 @@ def fill(text: Text, tables: Mapping[str, pd.DataFrame]) -> FilledText:
 
 
 def _find(fact: Fact, tables: Mapping[str, pd.DataFrame]) -> tuple[list[str], dict[str, str]]:
-    """Return what is wrong with a fact, and the values that a text can show of it."""
+    """Find the rows of a fact; return its faults, and the values that a text can show of it."""
     table = tables[fact.of]
     checked.check_all([*fact.where, *fact.each, fact.take], table, "verdict.yaml: column")
     rows = select(table, fact.where)
@@ -131,8 +131,8 @@ def _find(fact: Fact, tables: Mapping[str, pd.DataFrame]) -> tuple[list[str], di
 
 
 def _compare_readings(fact: Fact, rows: pd.DataFrame, by_reading: pd.DataFrame) -> list[str]:
-    """Return what is wrong with the readings that a fact about a claim names: a claim that a
-    reading turns must name it.
+    """Compare the readings that a fact names with those that turn its claim, and return
+    the faults.
     """
     if fact.of not in ("claims", "claim_checks") or rows.empty:
         return []
@@ -150,7 +150,7 @@ def _compare_readings(fact: Fact, rows: pd.DataFrame, by_reading: pd.DataFrame) 
 
 
 def _show(fact: Fact, values: pd.Series, true: pd.Series) -> dict[str, str]:
-    """Return how a text shows the values of a fact."""
+    """Format the values of a fact for a text: by name, such as `low` or `rows`."""
     shown = {"holds": str(true.sum()), "rows": str(len(values))}
     if len(values) == 1:
         shown["value"] = str(values.iloc[0])
@@ -162,7 +162,7 @@ def _show(fact: Fact, values: pd.Series, true: pd.Series) -> dict[str, str]:
     return shown
 
 
-def read_tables(folder: Path, study: str) -> dict[str, pd.DataFrame]:
+def read_outcome_tables(folder: Path, study: str) -> dict[str, pd.DataFrame]:
     """Read the rows of a study from the tables of the outcome: of numbers, claims and their checks
     those that count.
     """

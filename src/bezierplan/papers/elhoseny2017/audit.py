@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import build_row, compare_with_limit
+from bezierplan.analysis.audit.rows import build_audit_row, compare_with_limit
 from bezierplan.papers.elhoseny2017.functions import count_pairs, read_solutions, read_text_values
 from bezierplan.planners.parts.diversity import compute_q_statistic
 
@@ -47,10 +47,10 @@ def _audit_text(published: "Published") -> Iterator[dict]:
     # Eta decays by a factor, which the text calls linear.
     last = eta * decay**iterations
     rule = f"eta decreases to 0 over the {iterations} iterations"
-    yield build_row("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
+    yield build_audit_row("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
     half = eta * (1 - decay ** (iterations // 2)) / (eta - last)
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    yield build_row("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
+    yield build_audit_row("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
     rule = (
         "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
         "most eta: eta after an iteration"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import build_row, compare_with_limit
+from bezierplan.analysis.audit.rows import build_audit_row, compare_with_limit
 from bezierplan.geometry import curves
 from bezierplan.papers.ma2020.functions import read_side_of_maps
 
@@ -35,7 +35,9 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         cells = share * parameters[workspace, "grid_size"] ** 2
         whole = round(cells)
         location = f"workspace={workspace}"
-        yield build_row("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
+        yield build_audit_row(
+            "parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9)
+        )
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
     rule = (
@@ -60,7 +62,7 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         "with control points at 0, 0 and 1"
     )
     location = "2, equation (1)"
-    yield build_row("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
+    yield build_audit_row("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import rules
-from bezierplan.analysis.audit.rows import build_row, compare_with_limit
+from bezierplan.analysis.audit.rows import build_audit_row, compare_with_limit
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
@@ -92,7 +92,7 @@ def _test_by_fisher(
         "Holm"
     )
     return [
-        build_row(
+        build_audit_row(
             name,
             f"metric={metric}, proposed and {other}",
             rule,
@@ -133,7 +133,7 @@ def _test_all_maps(
         f"over all maps the proposed mutation has as often the {words} as ref12, but for chance: p "
         "of the test of Cochran, Mantel and Haenszel"
     )
-    return build_row(
+    return build_audit_row(
         ", ".join(tables), f"metric={metric}, all maps", rule, p, ALPHA, bool(p >= ALPHA), told
     )
 
