@@ -63,9 +63,8 @@ _SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
 STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "mean": _compute_mean,
     "std": _compute_std,
-    "iqr": lambda values: np.subtract(
-        *_compute_quantiles(values, 0.75, 0.25)
-    ),  # interquartile range
+    # The interquartile range.
+    "iqr": lambda values: np.subtract(*_compute_quantiles(values, 0.75, 0.25)),
     "range": lambda values: np.ptp(values, axis=-1),
     "min": lambda values: np.min(values, axis=-1),
     "max": lambda values: np.max(values, axis=-1),

@@ -45,7 +45,7 @@ def rank_methods(rows: pd.DataFrame) -> pd.DataFrame:
     On each problem methods are ranked by the share of feasible runs, and equal ones by the excess;
     if that is equal too, they share the mean of their ranks.
     """
-    # Lengths that differ by less than a millionth share a rank.
+    # Excesses that agree to a millionth share a rank.
     rows = rows.round({"excess": 6}).sort_values(["feasible", "excess"], ascending=[False, True])
     order = rows.groupby(["feasible", "excess"], sort=False, dropna=False).ngroup()
     methods = rows.assign(rank=order.groupby(rows["problem"]).rank()).groupby("method")
