@@ -33,18 +33,18 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "The papers' methods, worst first: medians over the problems. The exact shortest path with "
-    "rounded corners is asked to turn no tighter than the method's median path without corners; "
-    "the column after it counts the problems in which the method is shorter than that path, or "
-    "turns more gently than it can."
+    "The papers' methods, those with the fewest free paths first: medians over the problems. The "
+    "exact shortest path with rounded corners is asked to turn no tighter than the method's median "
+    "path without corners. The column after it counts the problems in which the method is shorter "
+    "than that path, or turns more gently than it can."
 )
 OPEN = (
     "No paper prints all that its numbers depend on, so a printed number that misses ours refutes "
     "nothing by itself."
 )
 RANGE = (
-    "Our range is where 95 % of experiments of the paper's size end under our default reading. It "
-    "cannot tell where it holds at least half of the paper's other numbers of the same kind."
+    "Our range holds 95 % of the results of experiments as large as the paper's. It is too "
+    "wide to tell where half of the paper's other numbers of the kind would fit as well."
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 

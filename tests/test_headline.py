@@ -44,8 +44,8 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         )
     ) == (
         "Of 3 printed numbers our range is narrow enough to tell for 2: 1 lie inside it, 1 "
-        "outside. The other 1 would fit almost anything. For 1 the paper prints no map, so "
-        "neither proves it right or wrong."
+        "outside. The other 1 would fit almost anything. 1 depend on a map that the "
+        "paper does not print: these prove nothing."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

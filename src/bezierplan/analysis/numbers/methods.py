@@ -190,12 +190,6 @@ def format_table(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     """
     names = rows["study"] + "/" + rows["method"]
     index = [labels.get(both, labels.get(own, own)) for both, own in zip(names, rows["method"])]
-    corners = [
-        f" ({row.cornered:.0f} of {row.round + row.cornered:.0f} have corners)"
-        if row.cornered
-        else ""
-        for row in rows.itertuples()
-    ]
     return pd.DataFrame(
         {
             "scenarios": rows["family"].to_list(),
@@ -204,10 +198,11 @@ def format_table(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
                 + (f", worst {_format_share(row.worst)}" if row.worst < row.free else "")
                 for row in rows.itertuples()
             ],
-            "longer than the shortest": [*map(_format_share, rows["excess"])],
-            "rounded shortest path, turning as gently": [
-                _format_share(row.rounded) + end for row, end in zip(rows.itertuples(), corners)
+            "with corners": [
+                f"{row.cornered:.0f} of {row.round + row.cornered:.0f}" for row in rows.itertuples()
             ],
+            "longer than the shortest by": [*map(_format_share, rows["excess"])],
+            "rounded shortest path, turning as gently": [*map(_format_share, rows["rounded"])],
             "shorter or smoother than that": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
                 for row in rows.itertuples()

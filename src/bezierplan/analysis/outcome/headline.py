@@ -27,7 +27,7 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     if vague := len(numbers) - len(told):
         text += f" The other {vague} would fit almost anything."
     if ours := int((numbers["reason"] == comparison.NO_MAP).sum()):
-        text += f" For {ours} the paper prints no map, so neither proves it right or wrong."
+        text += f" {ours} depend on a map that the paper does not print: these prove nothing."
     return text
 
 
@@ -59,8 +59,8 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     none = int((rows["adds"] == 0).sum())
     return (
         "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios the paper's method is "
-        "nowhere shorter than it, nor smoother than it can be."
+        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios below, no method of a "
+        "paper gives a shorter path that is as smooth, or a smoother one."
     )
 
 
