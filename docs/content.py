@@ -33,7 +33,7 @@ PICTURES = {
 """The figure of each paper that shows what it is about; of another study, its first."""
 
 
-def results() -> tuple[str, Path]:
+def find_results() -> tuple[str, Path]:
     """The scale with the most runs that there is, and the folder of its results. Raises Fault."""
     for scale in SCALES:
         if (ROOT / "results" / scale / "index.html").is_file():
@@ -41,37 +41,37 @@ def results() -> tuple[str, Path]:
     raise Fault("no results to show: `snakemake smoke` or `make reproduce` makes them")
 
 
-def content() -> tuple[SimpleNamespace, Path]:
-    """Return what `build.page` gives for the results that there are, and their folder. Each study
-    also gets its name, as people search for it; definition; data, of the viewer; picture, one of
-    its figures. Raises Fault.
+def read_content() -> tuple[SimpleNamespace, Path]:
+    """Return what `build.gather_content` gives for the results that there are, and their folder.
+    Each study also gets its name, as people search for it; definition; data, of the viewer;
+    picture, one of its figures. Raises Fault.
     """
-    scale, folder = results()
+    scale, folder = find_results()
     with contextlib.chdir(ROOT):
         studies = read_studies()
         whole = page_jobs.build_page(studies, scale)
         study_code.functions(whole.code)  # what a study's metrics mean
-        page = build.page(
+        page = build.gather_content(
             whole.page._replace(outcome=[*studies]),
             folder,
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
         )
-    page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
+    page.data = unpack_data((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
-        study.name, study.definition, study.data = outcome.name_of(key), studies[key], page.data
+        study.name, study.definition, study.data = outcome.format_name(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         of_name = {figure["name"]: figure for figure in study.figures}
         study.picture = of_name.get(PICTURES.get(key), study.figures[0])
     return page, folder
 
 
-def about(key: str) -> str:
+def read_prose(key: str) -> str:
     """What a paper is, or a planner does, in prose."""
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
 
 
-def data_of(page: str) -> dict[str, Any]:
+def unpack_data(page: str) -> dict[str, Any]:
     """The runs, problems and workspaces that a page of results holds for its viewer."""
     packed = re.search(r'id="page-data">([^<]*)', page)[1]
     return json.loads(zlib.decompress(base64.b64decode(packed)))
@@ -81,7 +81,7 @@ def data_of(page: str) -> dict[str, Any]:
 # Citations
 
 
-def citations() -> list[dict[str, Any]]:
+def list_citations() -> list[dict[str, Any]]:
     """This software, then the papers, as CITATION.cff lists them. Added: key; names, of the
     authors; where, journal, version and year; doi, maybe none; bibtex.
     """
@@ -93,17 +93,17 @@ def citations() -> list[dict[str, Any]]:
         | entry
         | {
             "key": entry["notes"],
-            "names": names(entry, ", "),
+            "names": format_authors(entry, ", "),
             "where": "".join(
                 f", {entry[name]}" for name in ("journal", "version", "year") if name in entry
             ),
-            "bibtex": bibtex(entry),
+            "bibtex": format_bibtex(entry),
         }
         for entry in (first, *content["references"])
     ]
 
 
-def names(entry: dict[str, Any], between: str) -> str:
+def format_authors(entry: dict[str, Any], between: str) -> str:
     """The authors of an entry of CITATION.cff."""
     return between.join(
         each.get("name") or f"{each['given-names']} {each['family-names']}"
@@ -111,10 +111,10 @@ def names(entry: dict[str, Any], between: str) -> str:
     )
 
 
-def bibtex(entry: dict[str, Any]) -> str:
+def format_bibtex(entry: dict[str, Any]) -> str:
     """An entry of CITATION.cff for BibTeX."""
     kind = {"article": "article" if "journal" in entry else "unpublished"}
-    authors = names(entry, " and ")
+    authors = format_authors(entry, " and ")
     fields = {"author": f"{{{authors}}}" if entry["type"] == "software" else authors}
     fields |= {name: entry.get(name) for name in ("title", "journal", "year", "version", "doi")}
     fields["url"] = entry.get("repository-code")

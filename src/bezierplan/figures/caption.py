@@ -34,7 +34,7 @@ class Caption(NamedTuple):
         return " ".join(f"{part}." for part in (self.title, *found, self.remark, shown) if part)
 
 
-def tell(verdict: str, runs: int, which: str = "") -> str:
+def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
     """Return a verdict in words with the runs that it rests on.
 
     >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
@@ -44,16 +44,16 @@ def tell(verdict: str, runs: int, which: str = "") -> str:
     return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
 
 
-def tell_both(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
+def describe_verdicts(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
     """Return the verdict of many runs, after that of those shown if it differs.
 
     >>> tell_both("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'
     """
-    many = tell(verdict, runs)
+    many = describe_verdict(verdict, runs)
     if verdict_here in ("", verdict, "depends", "untestable") or verdict == "untestable":
         return many
-    first = tell(verdict_here, runs_here, "these ")
+    first = describe_verdict(verdict_here, runs_here, "these ")
     if verdict == "depends":
         return f"{first}, {'and' if verdict_here == 'undecided' else 'but'} {many}"
     return f"{first}, {many.removesuffix(' runs')}"

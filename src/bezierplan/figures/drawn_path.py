@@ -47,15 +47,15 @@ def draw(
         import matplotlib.pyplot as plt
 
         axes = plt.figure(layout="constrained").add_subplot()
-    parts: dict[str, Any] = {"path": paths.steps(path) if path else np.empty((0, 2))}
+    parts: dict[str, Any] = {"path": paths.sample_path(path) if path else np.empty((0, 2))}
     if map:
-        workspace.draw_home(axes, getattr(home, "workspace", home))
+        workspace.draw_workspace(axes, getattr(home, "workspace", home))
         ends = {name: [getattr(home, name)] for name in workspace.ENDS if hasattr(home, name)}
         parts |= ends if shortest is None else ends | {"bound": shortest}
     if collision:
         parts["collision"] = [collision]
     looks = paths.LOOK | {"path": paths.LOOK["path"] | look}
-    style.draw_parts(axes, workspace.places(parts), looks)
+    style.draw_parts(axes, workspace.list_points(parts), looks)
     return axes
 
 
@@ -69,7 +69,7 @@ def add_legend(figure: Figure) -> None:
     figure.legend(named.values(), named, loc="outside lower center", ncols=columns)
 
 
-def html(text: str, *draws: Callable[..., object]) -> str:
+def build_html(text: str, *draws: Callable[..., object]) -> str:
     """Return what functions draw, each on axes of its own, and a text below, as HTML."""
     drawn = io.BytesIO()
     save(drawn, *draws, **_NOTEBOOK)

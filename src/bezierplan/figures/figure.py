@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
 
-from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
+from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, list_kinds
 from bezierplan.schema.model import (
     Line,
     Model,
@@ -15,23 +15,23 @@ from bezierplan.schema.model import (
     show_value,
 )
 
-_PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", kinds())]])
+_PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", list_kinds())]])
 _PARTS = TypeAdapter(
     Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
 )
 
 
-def _joined(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
+def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
     """The keys of both; mappings that stand in both are joined likewise."""
     both = {
-        key: _joined(part[key], common[key])
+        key: _merge_keys(part[key], common[key])
         for key in part.keys() & common.keys()
         if isinstance(part[key], dict) and isinstance(common[key], dict)
     }
     return common | part | both
 
 
-def _expanded(place: int, entry: Any) -> dict[str, Any]:
+def _expand_entry(place: int, entry: Any) -> dict[str, Any]:
     """What an entry at a place in a list of panels stands for, by the keys that lead there."""
     if not isinstance(entry, dict) or "each" not in entry:
         return {f"{place}": entry}
@@ -40,16 +40,16 @@ def _expanded(place: int, entry: Any) -> dict[str, Any]:
         parts = _PARTS.validate_python(entry["each"])
     except ValidationError:
         raise build_error(f"each: {show_value(entry['each'])}: expected {EACH}") from None
-    return {f"{place}: each: {n}": _joined(part, shared) for n, part in enumerate(parts)}
+    return {f"{place}: each: {n}": _merge_keys(part, shared) for n, part in enumerate(parts)}
 
 
-def _panels(entries: Any) -> list[Panel]:
+def _read_panels(entries: Any) -> list[Panel]:
     """The panels of a figure, each with its place in the list of the file."""
     if not isinstance(entries, list) or not entries:
         raise build_expectation("a list of panels")
     placed: dict[str, Any] = {}
     for number, entry in enumerate(entries):
-        placed |= _expanded(number, entry)
+        placed |= _expand_entry(number, entry)
     panels = _PANELS.validate_python(placed)
     for place, panel in panels.items():
         panel._place = place
@@ -66,7 +66,9 @@ class Figure(Model):
     width: Literal["one", "two"] = Field(
         "two", description="of the sheet, in columns of a journal: one (8.5 cm) or two (17 cm)"
     )
-    panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
+    panels: Annotated[list[Panel], PlainValidator(_read_panels)] = Field(
+        description="a list of panels"
+    )
 
     @property
     def workspaces(self) -> list[str]:

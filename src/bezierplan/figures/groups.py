@@ -27,57 +27,57 @@ LIMITS = {
 _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 
-def grouped(
+def collect_rows(
     results: Results,
     keys: list[str],
     rows: Callable[[Results], Iterable[dict[str, Any]]],
 ) -> pd.DataFrame:
     """The rows of each group of runs with equal keys, with what says which runs these are.
 
-    Columns: those of `constants`; the keys; runs and feasible_runs (counts); those of the rows.
-    Runs are in the order of their ids, so that no sum depends on the order in which chunks were
-    read.
+    Columns: those of `find_constants`; the keys; runs and feasible_runs (counts); those of the
+    rows. Runs are in the order of their ids, so that no sum depends on the order in which chunks
+    were read.
     """
     import pandas as pd
 
     runs = results.runs.sort_values("id")
     return pd.DataFrame(
-        constants(runs) | dict(zip(keys, key)) | counts(own) | row
+        find_constants(runs) | dict(zip(keys, key)) | count_runs(own) | row
         for key, own in runs.groupby(keys)
         for row in rows(results._replace(runs=own))
     )
 
 
-def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
+def compute_summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
     """A statistic of a metric for each group of runs with equal keys.
 
-    Columns: those of `grouped`; n (runs that have the metric), value, low95 and high95 (its 95 %
-    bootstrap interval), in the metric's unit.
+    Columns: those of `collect_rows`; n (runs that have the metric), value, low95 and high95 (its 95
+    % bootstrap interval), in the metric's unit.
     """
 
-    def rows(group: Results) -> Iterable[dict[str, Any]]:
-        numbers = values(group)
+    def build_row(group: Results) -> Iterable[dict[str, Any]]:
+        numbers = list_values(group)
         key = [f"{column}={group.runs[column].iloc[0]}" for column in keys]
         rng = generator("/".join([metric, statistic, *key]))
         low, high = statistics.interval(statistic, numbers, rng)
         value = statistics.statistic(statistic, numbers)
         yield {"n": len(numbers), "value": value, "low95": low, "high95": high}
 
-    return grouped(measured(results, metric), keys, rows)
+    return collect_rows(add_metric(results, metric), keys, build_row)
 
 
-def measured(results: Results, metric: str) -> Results:
+def add_metric(results: Results, metric: str) -> Results:
     """Results with a metric in the column value. Raises KeyError for an unknown metric."""
     numbers = metrics.values(results.runs, metric, results.problems)
     return results._replace(runs=results.runs.assign(value=numbers))
 
 
-def values(group: Results) -> np.ndarray:
-    """The sorted numbers (n,) of the runs that have the metric of `measured`."""
+def list_values(group: Results) -> np.ndarray:
+    """The sorted numbers (n,) of the runs that have the metric of `add_metric`."""
     return np.sort(group.runs["value"].dropna().to_numpy())
 
 
-def constants(runs: pd.DataFrame) -> dict[str, Any]:
+def find_constants(runs: pd.DataFrame) -> dict[str, Any]:
     """Problem and method of runs, where they share one."""
     return {
         column: runs[column].iloc[0]
@@ -86,12 +86,12 @@ def constants(runs: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-def counts(runs: pd.DataFrame) -> dict[str, int]:
+def count_runs(runs: pd.DataFrame) -> dict[str, int]:
     """How many runs there are, and how many of them are feasible."""
     return {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
 
 
-def limits(runs: pd.DataFrame) -> dict[str, float]:
+def find_limits(runs: pd.DataFrame) -> dict[str, float]:
     """Values of `LIMITS` that all runs share, by name."""
     return {
         name: runs[name].iloc[0]
@@ -100,7 +100,7 @@ def limits(runs: pd.DataFrame) -> dict[str, float]:
     }
 
 
-def published(
+def find_published(
     results: Results, metric: str, table: str | None, statistic: str = "mean"
 ) -> list[float]:
     """Values of a metric's statistic that a table of the paper prints for the problem, method and
@@ -119,11 +119,11 @@ def published(
     return sorted(numbers["value"].unique())
 
 
-def axis_label(column: str, scene: Any, statistic: str = "") -> str:
+def describe_axis(column: str, scene: Any, statistic: str = "") -> str:
     """Name and unit of what an axis shows; a column other than a metric has its unit in its label,
     or is a count, or has no unit. Lengths of time have theirs in their numbers.
     """
-    unit = unit_of(column, scene)
+    unit = find_unit(column, scene)
     beside = "" if unit in ("-", "s", "") else f" ({unit})"
     return f"{statistic} {naming.column_name(column, scene.labels)}{beside}".lstrip()
 
@@ -131,29 +131,29 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
 def show_metric(
     axes: Axes, metric: str, scene: Any, statistic: str = "", scale: str = "linear"
 ) -> None:
-    """Name the axis of y after what it shows, and scale it (`style.measure`)."""
-    axes.set_ylabel(axis_label(metric, scene, statistic))
-    style.measure(axes.yaxis, scale, unit_of(metric, scene))
+    """Name the axis of y after what it shows, and scale it (`style.scale_axis`)."""
+    axes.set_ylabel(describe_axis(metric, scene, statistic))
+    style.scale_axis(axes.yaxis, scale, find_unit(metric, scene))
 
 
-def unit_of(column: str, scene: Any) -> str:
+def find_unit(column: str, scene: Any) -> str:
     """The unit of a metric; none for another column."""
     return metrics.unit(column, scene.unit) if column in metrics.METRICS else ""
 
 
-def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
-    """The number of runs behind a statistic, from the columns of `summary`, and the share of them
-    that is feasible.
+def describe_runs(frame: pd.DataFrame, statistic: str, where: str) -> str:
+    """The number of runs behind a statistic, from the columns of `compute_summary`, and the share
+    of them that is feasible.
     """
     share = (100 * frame["feasible_runs"] / frame["runs"]).round()
-    counted = _range(frame["runs"])
+    counted = _format_range(frame["runs"])
     if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
-        counted = f"{_range(frame['n'])} of {counted}"
+        counted = f"{_format_range(frame['n'])} of {counted}"
     runs = f"{statistic} of {counted} runs" if counted != "1" else "1 run"
-    return f"{runs} per {where}, {_range(share)} % feasible"
+    return f"{runs} per {where}, {_format_range(share)} % feasible"
 
 
-def _range(numbers: pd.Series) -> str:
+def _format_range(numbers: pd.Series) -> str:
     """The range of whole numbers, as printed."""
     low, high = numbers.min(), numbers.max()
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"

@@ -41,9 +41,9 @@ class Latex(Job):
         )
         notes = [self.note] if self.note else []
         if beside:
-            table = latex.laid_over(table, *beside, self.heads)
+            table = latex.stack_numbers(table, *beside, self.heads)
             notes = [comparison.SIGNS_MEAN, *notes]
-        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
+        text = latex.format_table(table, self.caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 
 
@@ -121,7 +121,7 @@ class FigureFiles(Job):
         checks = [by_reading.read_checks(file) for file in input_files.alternatives]
         under = [*zip(self.alternatives, checks, strict=True)]
         sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
-        sheet.write_data(sheet.data(self.panels, sources), output_files.data)
+        sheet.write_data(sheet.collect_data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
         )
@@ -144,7 +144,7 @@ class Page(Job):
 
         study_code.functions(self.code)
         folder = Path(input_files.verified).parent
-        page = build.page(
+        page = build.gather_content(
             self.page,
             folder,
             list(input_files.summary),
@@ -152,4 +152,4 @@ class Page(Job):
             reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.outcome else None,
             results=inputs.group_by_experiment(self.shows, input_files),
         )
-        Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")
+        Path(output_files.page).write_text(build.render_page(page, folder), encoding="utf-8")

@@ -59,7 +59,7 @@ class Layout(Model):
         every = [part if isinstance(part, dict) else dict(zip(part, part)) for part in parts]
         return {name: printed or " " for part in every for name, printed in part.items()}
 
-    def dress(self, axes: Axes, number: int) -> None:
+    def apply_to(self, axes: Axes, number: int) -> None:
         """Give the axes and the parts of the panel of a number the words and colours of print;
         units stay those of what is drawn.
         """

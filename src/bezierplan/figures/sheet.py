@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from bezierplan.figures import style
 from bezierplan.figures.layout import Layout
-from bezierplan.figures.panels import Note, Panel, Sources, kind_module
+from bezierplan.figures.panels import Note, Panel, Sources, load_kind
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # A panel narrower than this, in inches, has smaller marks and fewer ticks.
@@ -52,13 +52,13 @@ class FigureScene(NamedTuple):
     places: Mapping[str, Problem] = MappingProxyType({})
 
 
-def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
+def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
     """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the
     first column. Raises ValueError for options or runs that a kind cannot draw.
     """
     frames = []
     for number, panel in enumerate(panels):
-        frame = kind_module(panel.kind).data(panel.source(sources), panel)
+        frame = load_kind(panel.kind).data(panel.source(sources), panel)
         frame.insert(0, "panel", number)
         frames.append(frame)
     return pd.concat(frames, ignore_index=True)
@@ -77,15 +77,17 @@ def read_data(file: str) -> pd.DataFrame:
 def draw(
     panels: list[Panel], frame: pd.DataFrame, scene: FigureScene, columns: int, width: str = "two"
 ) -> Figure:
-    """The figure of a table made by `data`. Its label has notes: for each panel the run that
-    it shows, and what it counts; in a second line, if anything can be said of it, what is plain to
-    the eye.
+    """The figure of a table made by `collect_data`. Its label has notes: for each panel the run
+    that it shows, and what it counts; in a second line, if anything can be said of it, what is
+    plain to the eye.
 
     frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its
     content. columns: panels per row. width: of the sheet, a key of `style.WIDTHS`.
     """
     rows, inches = math.ceil(len(panels) / columns), style.WIDTHS[width]
-    scene = scene._replace(labels={name: _plain(text) for name, text in scene.labels.items()})
+    scene = scene._replace(
+        labels={name: _escape_dollars(text) for name, text in scene.labels.items()}
+    )
     letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]]
     if len(panels) == 1:
         letters = [""]
@@ -96,16 +98,16 @@ def draw(
         FigureCanvasAgg(figure)
         notes = []
         for number, (letter, panel) in enumerate(zip(letters, panels)):
-            kind, rows_of_panel = kind_module(panel.kind), frame[frame["panel"] == number]
+            kind, rows_of_panel = load_kind(panel.kind), frame[frame["panel"] == number]
             projection = getattr(kind, "PROJECTION", None)
             axes = figure.add_subplot(rows, columns, number + 1, projection=projection)
             notes.append(kind.draw(axes, rows_of_panel, scene, panel))
             if scene.layout:
-                scene.layout.dress(axes, number)
+                scene.layout.apply_to(axes, number)
             _fit(
                 axes,
                 letter
-                + _heading(
+                + _write_heading(
                     panel, rows_of_panel if several else rows_of_panel[[]], scene, notes[-1]
                 ),
                 inches / columns,
@@ -113,8 +115,8 @@ def draw(
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
-    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
-    captions[0] = " ".join(filter(None, [captions[0], _same_paths(letters, frame)]))
+    captions = [_join_clauses(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
+    captions[0] = " ".join(filter(None, [captions[0], _describe_equal_paths(letters, frame)]))
     figure.set_label("\n".join(filter(None, captions)))
     return figure
 
@@ -122,18 +124,18 @@ def draw(
 _PARTS = "caption", "glance"
 
 
-def _plain(text: str) -> str:
+def _escape_dollars(text: str) -> str:
     """Text that matplotlib prints as it stands: a dollar begins no formula."""
     return text.replace("$", r"\$")
 
 
-def _heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
+def _write_heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
     """A panel's title with the method whose runs it shows, if there is only one and it is not that
     of all panels, and a few words below it.
     """
     methods = frame["method"].dropna().unique() if "method" in frame else []
     method = scene.labels.get(methods[0], methods[0]) if len(methods) == 1 else ""
-    title = ", ".join(filter(None, [_plain(panel.title or ""), method]))
+    title = ", ".join(filter(None, [_escape_dollars(panel.title or ""), method]))
     return "\n".join(filter(None, [title, note.heading]))
 
 
@@ -142,15 +144,15 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
     to fit.
     """
     room = width - _BESIDE
-    axes.set_title(_in_lines(heading, room))
+    axes.set_title(_break_lines(heading, room))
     axes.set_anchor("N")
     if axes.name == "3d":
         return
     if axes.get_aspect() == "auto" and axes.get_box_aspect() is None:
         axes.set_box_aspect(style.PANEL_HEIGHT)
     high = room * (axes.get_box_aspect() or 1)
-    axes.set_xlabel(_in_lines(axes.get_xlabel(), room))
-    axes.set_ylabel(_in_lines(axes.get_ylabel(), high))
+    axes.set_xlabel(_break_lines(axes.get_xlabel(), room))
+    axes.set_ylabel(_break_lines(axes.get_ylabel(), high))
     if width < _NARROW_PANEL:
         for line in axes.get_lines():
             line.set_markersize(_SMALLER * line.get_markersize())
@@ -158,7 +160,7 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
             axes.locator_params(nbins=4, integer=True)
 
 
-def _in_lines(text: str, room: float) -> str:
+def _break_lines(text: str, room: float) -> str:
     """Text in lines that fit a width in inches."""
     letters = max(10, int(room / _LETTER))
     return "\n".join(textwrap.fill(line, letters) for line in text.splitlines())
@@ -209,7 +211,7 @@ def _fit_height(figure: Figure) -> None:
     figure.set_layout_engine(None)
 
 
-def _caption(letters: list[str], clauses: list[str]) -> str:
+def _join_clauses(letters: list[str], clauses: list[str]) -> str:
     """What the panels say, each with its letter, those that say the same together."""
     same = {
         clause: [letter.strip() for letter, own in zip(letters, clauses) if own == clause]
@@ -218,7 +220,7 @@ def _caption(letters: list[str], clauses: list[str]) -> str:
     return " ".join(f"{', '.join(own)} {clause}.".lstrip() for clause, own in same.items())
 
 
-def _same_paths(letters: list[str], frame: pd.DataFrame) -> str:
+def _describe_equal_paths(letters: list[str], frame: pd.DataFrame) -> str:
     """Which panels show the same path."""
     if "part" not in frame:
         return ""

@@ -141,7 +141,7 @@ _LEAST_SPAN = 0.003
 _LINEAR = 1e-3
 
 
-def ground(share: float) -> str:
+def choose_ground_colour(share: float) -> str:
     """The colour of terrain at a share of the range from the lowest to the highest: pale, so that
     lines stand out.
     """
@@ -157,7 +157,7 @@ def interval_band(colour: str) -> dict[str, Any]:
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
-def looks_of(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
+def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
     """Method -> the name of its look in every figure: the declared one, else its planner's, else
     one that few other methods have.
 
@@ -174,7 +174,7 @@ def looks_of(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, s
     return {method: str(look) for method, look in looks.items()}
 
 
-def lines(
+def choose_line_styles(
     values: Sequence[Any], looks: Mapping[str, str] = MappingProxyType({})
 ) -> list[dict[str, Any]]:
     """Styles of lines for values side by side, one each: a colour scale for numbers; for methods
@@ -207,20 +207,20 @@ def lines(
     ]
 
 
-def groups(
+def list_groups(
     frame: pd.DataFrame, column: str, where: dict[str, Any], scene: Any
 ) -> list[tuple[Any, pd.DataFrame, dict[str, Any]]]:
     """The values of a column in the order in which a panel shows them, each with its rows and its
     style, printed name included.
     """
-    values = in_order(frame[column], where)
+    values = list_in_order(frame[column], where)
     return [
         (
             value,
             frame[frame[column] == value],
             look | {"label": naming.printed(value, column, scene.labels)},
         )
-        for value, look in zip(values, lines(values, scene.looks))
+        for value, look in zip(values, choose_line_styles(values, scene.looks))
     ]
 
 
@@ -232,7 +232,7 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **mor
             axes.plot(own["x"], own["y"], **more | look)
 
 
-def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
+def scale_axis(axis: Any, scale: str = "linear", unit: str = "") -> None:
     """Scale an axis of measured values, so that it shows at least `_LEAST_SPAN` of them, with plain
     numbers; lengths of time with their unit.
     """
@@ -265,7 +265,7 @@ def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
     axes.grid(visible=True, axis="y")
 
 
-def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
+def list_in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
     """The distinct values of a column: those in a panel's `where`, in its order, then the others,
     sorted.
     """

@@ -18,7 +18,7 @@ EVIDENCE = [
 """What many runs say of all studies: tables of `reader.Evidence`."""
 
 
-def files() -> list[str]:
+def list_files() -> list[str]:
     """The templates, styles and scripts of the page, whose content decides how it looks."""
     return sorted(
         str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir()
@@ -34,7 +34,7 @@ def read_answers() -> dict[str, tuple[str, str]]:
         return {row["study"]: (row["title"], row["text"]) for row in csv.DictReader(rows)}
 
 
-def in_printed_order(names: Iterable[str]) -> list[str]:
+def sort_as_printed(names: Iterable[str]) -> list[str]:
     """Names of tables and figures with the numbered ones first, tables before figures, each by its
     number; the others as they were.
 

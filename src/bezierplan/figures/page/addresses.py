@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 
-def address(*parts: Any) -> str:
+def build_address(*parts: Any) -> str:
     """A path of names; what an address cannot hold, such as a space, becomes _."""
     return "/".join(
         re.sub(r"[^\w.+~-]", "_", f"{part:g}" if isinstance(part, float) else str(part))
@@ -14,7 +14,7 @@ def address(*parts: Any) -> str:
     )
 
 
-def of_cells(
+def build_cell_addresses(
     table: str, cells: Sequence[Mapping[str, Any]], primary: Mapping[str, Any]
 ) -> list[str]:
     """Addresses of the cells of a table, each with its key columns, then `metric` and `statistic`.
@@ -39,9 +39,9 @@ def of_cells(
         ]
         for cell in cells
     ]
-    short = [f"{table}/{address(*values)}" for values in told]
+    short = [f"{table}/{build_address(*values)}" for values in told]
     count = Counter(short)
     return [
-        name if count[name] == 1 else f"{table}/{address(*cell.values())}"
+        name if count[name] == 1 else f"{table}/{build_address(*cell.values())}"
         for name, cell in zip(short, cells, strict=True)
     ]

@@ -33,7 +33,7 @@ MARKS = {
 _AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
-def page(
+def gather_content(
     job: PageJob,
     folder: Path,
     summary: list[str] | None = None,
@@ -45,26 +45,26 @@ def page(
 
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
     methods.csv, if the scale has them. proof: the file of the check of the runs
-    shown (`running.recheck`), if there is one. evidence: as for `reader.studies`. results: of the
-    experiments whose runs the viewer shows, by study/experiment.
+    shown (`running.recheck`), if there is one. evidence: as for `reader.read_study_results`.
+    results: of the experiments whose runs the viewer shows, by study/experiment.
     """
     tables = [reader.read(file) for file in summary] if summary else None
-    studies = reader.studies(job, folder, tables, evidence)
+    studies = reader.read_study_results(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
     for place, files in results.items():
         key, _, name = place.partition("/")
-        shown, found = runs.chosen(key, name, studies[key].job.experiments[name], files)
+        shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
         studies[key].shown += shown
         for kind, own in found.items():
             data[kind] |= own
-    _share_workspaces(data)
+    _merge_workspaces(data)
     repeats = [own.repeats for own in job.studies.values()]
-    verified = _verified(Path(proof)) if proof else None
+    verified = _read_check(Path(proof)) if proof else None
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.about_scale(job.scale, repeats, bool(evidence)),
+        about_scale=answer.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else made_by(),
-        headline=_headline(_replace(tables, evidence, job.outcome), job.studies),
+        headline=_write_headline(_replace(tables, evidence, job.outcome), job.studies),
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -86,12 +86,12 @@ def _replace(
     """
     if not evidence:
         return tables
-    many = evidence.of(studies)[: len(tables or evidence)]
+    many = evidence.select(studies)[: len(tables or evidence)]
     own = [table[~table["study"].isin(studies)] for table in tables or []]
     return [pd.concat(both, ignore_index=True) for both in zip(many, own)] if own else [*many]
 
 
-def _verified(file: Path) -> dict[str, Any]:
+def _read_check(file: Path) -> dict[str, Any]:
     """What the page says of the check: with the SHA-256 of its file, which lists that of every
     other file behind the page.
     """
@@ -99,7 +99,7 @@ def _verified(file: Path) -> dict[str, Any]:
     return json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
 
 
-def _share_workspaces(data: dict[str, dict]) -> None:
+def _merge_workspaces(data: dict[str, dict]) -> None:
     """Leave out workspaces that equal an earlier one, which their problems then name."""
     first: dict[str, str] = {}
     names = {
@@ -111,7 +111,7 @@ def _share_workspaces(data: dict[str, dict]) -> None:
         problem["workspace"] = names[problem["workspace"]]
 
 
-def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
+def _write_headline(tables: list | None, studies: Iterable[str]) -> list[str]:
     """Return the sentences on numbers and claims of the studies of the page, if there are any."""
     if not tables:
         return []
@@ -120,18 +120,18 @@ def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
     return [*filter(None, said)]
 
 
-def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
+def render_page(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
     """The page, or what another template shows of it, as one html text that needs no other file.
     folder: where the pictures of its figures are.
     """
-    text = environment(page, folder).get_template(template).render(page=page)
+    text = build_environment(page, folder).get_template(template).render(page=page)
     return "".join(
         part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
         for part in _AS_WRITTEN.split(text)
     )
 
 
-def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
+def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     """What templates can use, those of this folder and of more folders: a `jinja2.Environment`."""
     import jinja2
     from markupsafe import Markup
@@ -146,28 +146,28 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     )
     environment.filters |= {
         "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
-        "short": short,
+        "short": format_value,
         "heading": naming.heading,
         "amount": naming.amount,
-        "counts": counts,
-        "positions": positions,
+        "counts": count_verdicts,
+        "positions": describe_positions,
         "range_text": comparison.range_text,
-        "packed": packed,
-        "failing": answer.failing,
-        "labelled": labelled,
+        "packed": pack,
+        "failing": answer.select_failing,
+        "labelled": label_keys,
     }
     environment.globals |= {
-        "address": addresses.address,
+        "address": addresses.build_address,
         "answer": answer,
         "baseline": methods.BASELINE,
         "charts": charts,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
-        "grid": grid,
+        "grid": build_grid,
         "marks": MARKS,
         "root": "",  # before the paths of files of results
         "meaning": lambda metric: meaning(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
-        "size": size,
+        "size": read_size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
         "verdicts_on": words.on,
         "words": words.WORDS,
@@ -175,27 +175,27 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     return environment
 
 
-def packed(value: Any) -> str:
+def pack(value: Any) -> str:
     """Text, or JSON of another value, that the page's script unpacks."""
     if not isinstance(value, str):
         value = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return base64.b64encode(zlib.compress(value.encode(), 9)).decode()
 
 
-def size(drawing: str) -> list[int]:
+def read_size(drawing: str) -> list[int]:
     """Width and height of an svg text, in points."""
     found = (re.search(rf'\b{name}="([\d.]+)pt"', drawing) for name in ("width", "height"))
     return [round(float(each[1])) for each in found]
 
 
-def short(value: Any, digits: int = 4) -> str:
+def format_value(value: Any, digits: int = 4) -> str:
     """A value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
     return naming.number(value, digits) if isinstance(value, float) else str(value)
 
 
-def labelled(text: Any, labels: dict[str, str]) -> str:
+def label_keys(text: Any, labels: dict[str, str]) -> str:
     """Text in which the keys of methods and metrics are as printed.
 
     >>> labelled("the method mga_c of a_study", {"mga_c": "MGA-C"})
@@ -204,14 +204,14 @@ def labelled(text: Any, labels: dict[str, str]) -> str:
     return re.sub(r"\w+_\w+", lambda found: labels.get(found[0], found[0]), str(text))
 
 
-def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
+def count_verdicts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
     """Return how many rows there are of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
     names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 
-def positions(cells: Iterable[reader.Row]) -> str:
+def describe_positions(cells: Iterable[reader.Row]) -> str:
     """Return how many numbers of a table lie inside our range, and why they prove nothing, where
     all share the reason.
     """
@@ -231,7 +231,7 @@ def positions(cells: Iterable[reader.Row]) -> str:
     return text
 
 
-def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
+def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
     """Numbers as rows and columns: a row for each combination of keys, the default reading
     first, a column for each metric and statistic.
 
@@ -251,7 +251,10 @@ def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
     for cells in rows.values():
         keys = next(iter(cells.values()))["keys"]
         words = [
-            (_key(key, keys[key], labels), addresses.address(study, "method", keys[key]))
+            (
+                _format_key(key, keys[key], labels),
+                addresses.build_address(study, "method", keys[key]),
+            )
             for key in named
         ]
         primary = any(cell["primary"] for cell in cells.values())
@@ -260,22 +263,26 @@ def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
         head=[labels.get(key, key.replace("_", " ")) for key in named] + columns,
         rows=sorted(listed, key=lambda row: not row[0]),
         same=[
-            f"{key.replace('_', ' ')}: {reader.printed_key(key, next(iter(each)), labels)}"
+            f"{key.replace('_', ' ')}: {reader.format_key(key, next(iter(each)), labels)}"
             for key, each in values.items()
             if key not in named
         ],
         decimals=[
-            max(_decimals(cell["value_published"]) for cell in numbers if cell["column"] == column)
+            max(
+                _count_decimals(cell["value_published"])
+                for cell in numbers
+                if cell["column"] == column
+            )
             for column in columns
         ],
     )
 
 
-def _key(key: str, value: Any, labels: dict[str, str]) -> str:
+def _format_key(key: str, value: Any, labels: dict[str, str]) -> str:
     """A key in a column that names it, where a number stands alone."""
     plain = isinstance(value, int | float)
-    return short(value) if plain else reader.printed_key(key, value, labels)
+    return format_value(value) if plain else reader.format_key(key, value, labels)
 
 
-def _decimals(value: float | None) -> int:
+def _count_decimals(value: float | None) -> int:
     return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))

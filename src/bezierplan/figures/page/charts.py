@@ -35,7 +35,7 @@ def add_bars(cells: list[Row]) -> None:
             }
 
 
-def forests(comparisons: list[Row]) -> list[list[Row]]:
+def group_comparisons(comparisons: list[Row]) -> list[list[Row]]:
     """Comparisons of a claim by check and metric. Added to each: strip, the places from 0 to 100 of
     effect, ends, reference, printed effect and margin on the scale of its group.
     """

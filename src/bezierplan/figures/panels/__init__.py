@@ -96,7 +96,7 @@ class Sources:
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
 
-    def table(self, panel: TablePanel) -> pd.DataFrame:
+    def build_table(self, panel: TablePanel) -> pd.DataFrame:
         """The table of a function, which is called once for all panels that draw the same one: with
         the workspace if they name one, with the published tables that they name, and with their
         arguments.
@@ -163,7 +163,7 @@ class RunsPanel(Panel):
         results = sources.results[self.experiment]
         return results._replace(runs=select(results.runs, self.where))
 
-    def home(self, frame: pd.DataFrame, scene: Any) -> files.Workspace:
+    def find_workspace(self, frame: pd.DataFrame, scene: Any) -> files.Workspace:
         """The workspace of the runs in the table of what is drawn."""
         return scene.problems[self.experiment][frame["problem"].iloc[0]].workspace
 
@@ -189,7 +189,7 @@ class TablePanel(Panel):
         """The rows of the function's table that are shown."""
         from bezierplan.analysis.results import select
 
-        return select(sources.table(self), self.where).copy()
+        return select(sources.build_table(self), self.where).copy()
 
 
 class MetricPanel(RunsPanel):
@@ -247,14 +247,14 @@ PICK = (
 )
 
 
-def exactly_one(panel: Model, *keys: str) -> None:
+def require_one(panel: Model, *keys: str) -> None:
     """Raise the error of a panel that does not have exactly one of the keys."""
     both = [key for key in keys if key in panel.model_fields_set]
     if len(both) != 1:
         raise build_error(f"{' and '.join(both) or 'neither'}: expected either {' or '.join(keys)}")
 
 
-def only(runs: pd.DataFrame, column: str) -> Any:
+def find_only(runs: pd.DataFrame, column: str) -> Any:
     """The one value of a column of the runs that a panel shows. Raises ValueError if there are
     others.
     """
@@ -267,21 +267,21 @@ def only(runs: pd.DataFrame, column: str) -> Any:
     return values[0]
 
 
-def _places() -> dict[str, str]:
+def _find_places() -> dict[str, str]:
     return find_kinds("figures/panels", "panels")
 
 
-def kind_module(name: str) -> ModuleType:
+def load_kind(name: str) -> ModuleType:
     """The file of a kind of panel. Raises KeyError if there is none."""
-    return load_module(_places()[name])
+    return load_module(_find_places()[name])
 
 
-def panel_of(keys: dict[str, Any]) -> Panel:
+def build_panel(keys: dict[str, Any]) -> Panel:
     """The panel of a job, from its plain values."""
-    return kind_module(keys["kind"]).Options.model_validate(keys)
+    return load_kind(keys["kind"]).Options.model_validate(keys)
 
 
 @functools.cache
-def kinds() -> dict[str, type[Panel]]:
+def list_kinds() -> dict[str, type[Panel]]:
     """Kind of panel -> the options of its panels."""
-    return {name: kind_module(name).Options for name in _places()}
+    return {name: load_kind(name).Options for name in _find_places()}

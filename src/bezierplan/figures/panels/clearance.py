@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, only
+from bezierplan.figures.panels import Note, RunsPanel, find_only
 from bezierplan.schema.model import Repeat
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     from bezierplan.running import execution
 
-    problem = only(results.runs, "problem")
+    problem = find_only(results.runs, "problem")
     place = results.problems[problem], results.worlds[problem]
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
@@ -57,7 +57,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    for _, own, look in style.groups(frame, "method", options.where, scene):
+    for _, own, look in style.list_groups(frame, "method", options.where, scene):
         bare = look | {"marker": "", "linewidth": 1.0, "label": None}
         axes.plot(own["step"], own["clearance"], **bare)
         end, arrived = own[-1:], bool(own["arrived"].iloc[-1])

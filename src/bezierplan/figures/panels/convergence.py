@@ -16,14 +16,14 @@ from bezierplan.analysis import naming, statistics
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
-    grouped,
-    limits,
-    published,
-    runs_note,
+    collect_rows,
+    describe_runs,
+    find_limits,
+    find_published,
     show_metric,
 )
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
-from bezierplan.figures.panels.paths import feasible_note, picked, run_note
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
+from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
 from bezierplan.workspaces.seeds import generator
 
@@ -69,7 +69,7 @@ class Options(RunsPanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
-        exactly_one(self, "pick", "hue")
+        require_one(self, "pick", "hue")
         for key in {"statistic", "printed"} & self.model_fields_set:
             if self.hue is None:
                 raise build_error(f"{key}: needs hue")
@@ -83,11 +83,11 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact
     shortest length.
 
-    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty
-    without one), median, quartile1 and quartile3, bound. With `hue`, columns: those of
-    `groups.grouped`, generation, objective (the statistic), low95 and high95 (its 95 % bootstrap
-    interval), bound (empty if problems differ in it). With `context`, a column reference: the
-    length of the best known path of the methods' own kind, empty if problems differ in it. With
+    With `pick`, columns: those of `paths.choose_run`, generation, objective (of the picked run;
+    empty without one), median, quartile1 and quartile3, bound. With `hue`, columns: those of
+    `groups.collect_rows`, generation, objective (the statistic), low95 and high95 (its 95 %
+    bootstrap interval), bound (empty if problems differ in it). With `context`, a column reference:
+    the length of the best known path of the methods' own kind, empty if problems differ in it. With
     `printed`, a column of that name: the mean that this published table has for a group, in the row
     of the last generation.
 
@@ -98,11 +98,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     generations = max(
         runs["history"].map(len).max(), -1 if options.until is None else options.until + 1
     )
-    shared = limits(runs)
+    shared = find_limits(runs)
     if options.pick is not None:
-        frame = _of_one_run(results, options.pick, generations)
+        frame = _build_rows_of_run(results, options.pick, generations)
     else:
-        frame = grouped(results, [options.hue], lambda own: _of_group(own, options, generations))
+        frame = collect_rows(
+            results, [options.hue], lambda own: _build_rows_of_group(own, options, generations)
+        )
         theirs = frame.pop("printed")
         frame["bound"] = shared.get("bound", np.nan)
         if options.printed is not None and results.published is not None:
@@ -112,14 +114,14 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     return frame
 
 
-def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
+def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     import pandas as pd
 
-    run, names = picked(results, pick)
+    run, names = choose_run(results, pick)
     low, median, high = np.quantile(
-        _histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
+        _extend_histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
     )
-    own = np.nan if run is None else _histories(run.to_frame().T, generations)[0]
+    own = np.nan if run is None else _extend_histories(run.to_frame().T, generations)[0]
     drawn = {
         "generation": range(generations),
         "objective": own,
@@ -131,15 +133,17 @@ def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     return pd.DataFrame(names | drawn)
 
 
-def _of_group(group: Results, options: Options, generations: int) -> Iterable[dict[str, Any]]:
+def _build_rows_of_group(
+    group: Results, options: Options, generations: int
+) -> Iterable[dict[str, Any]]:
     """Each generation of a group, with the interval of its statistic from the same draws of
     runs.
     """
     statistic, hue = options.statistic, options.hue
-    histories = _histories(group.runs, generations)
+    histories = _extend_histories(group.runs, generations)
     name = f"convergence/{hue}={group.runs[hue].iloc[0]}"
     centres = statistics.STATISTICS[statistic](histories.T)
-    theirs = published(group, "objective", options.printed)
+    theirs = find_published(group, "objective", options.printed)
     ends = np.nan, np.nan
     for number, column in enumerate(histories.T):
         if number == 0 or not np.array_equal(column, histories[:, number - 1]):
@@ -154,7 +158,7 @@ def _of_group(group: Results, options: Options, generations: int) -> Iterable[di
         }
 
 
-def _histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
+def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
     """Histories (runs, generations), each extended with its last value."""
     return np.array(
         [
@@ -177,7 +181,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame, context=options.context)
     show_metric(axes, "objective", scene)
-    return Note("", run_note(frame, feasible_note(frame)))
+    return Note("", describe_run(frame, describe_feasible_runs(frame)))
 
 
 def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
@@ -192,7 +196,7 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    groups = style.groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options.where, scene)
     for number, (_, rows, look) in enumerate(groups):
         step = max(1, len(rows) // _MARKS)
         first = number * step // len(groups)
@@ -216,4 +220,4 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
     show_metric(axes, "objective", scene, options.statistic)
-    return Note("", runs_note(frame, options.statistic, "line"))
+    return Note("", describe_runs(frame, options.statistic, "line"))

@@ -69,7 +69,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_aspect("equal")
     alone = options.workspace is None
     if not alone:
-        workspaces.draw_home(axes, scene.workspaces[options.workspace])
+        workspaces.draw_workspace(axes, scene.workspaces[options.workspace])
     # Groups of neighbouring rows, so that later rows of the table lie on top.
     names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
     changed = (names != names.shift()).cumsum()

@@ -39,5 +39,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Let the function draw; what it returns, if it does, belongs into the notes."""
-    looks = {name: look for name, _, look in style.groups(frame, "method", options.where, scene)}
+    looks = {
+        name: look for name, _, look in style.list_groups(frame, "method", options.where, scene)
+    }
     return Note("", scene.functions[options.function](axes, frame, looks) or "")

@@ -14,8 +14,8 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import metrics
 from bezierplan.analysis.naming import amount
 from bezierplan.figures import style
-from bezierplan.figures.groups import axis_label, counts, published
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, exactly_one, only
+from bezierplan.figures.groups import count_runs, describe_axis, find_published
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.schema.model import (
@@ -79,7 +79,7 @@ _CHANGED = {
 }
 
 
-def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
+def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
     """The run that a panel shows, or None if there is none to pick, and its description in the
     columns of the panel's csv file.
 
@@ -90,7 +90,7 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     from bezierplan.analysis.results import pick as pick_run
 
     runs = results.runs
-    names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
+    names = {column: find_only(runs, column) for column in ("problem", "method")} | count_runs(runs)
     if pick.having is not None:
         runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
     run = pick_run(runs, pick.plain("having", "layout"))
@@ -104,9 +104,9 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     }
 
 
-def run_note(frame: pd.DataFrame, *more: str) -> str:
-    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or
-    just that there is none.
+def describe_run(frame: pd.DataFrame, *more: str) -> str:
+    """Which run a panel shows, from the columns that `choose_run` names, and more lines about it;
+    or just that there is none.
     """
     import pandas as pd
 
@@ -116,8 +116,8 @@ def run_note(frame: pd.DataFrame, *more: str) -> str:
     return "; ".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
 
 
-def feasible_note(frame: pd.DataFrame) -> str:
-    """How many of a panel's runs are feasible, from the columns that `picked` names."""
+def describe_feasible_runs(frame: pd.DataFrame) -> str:
+    """How many of a panel's runs are feasible, from the columns that `choose_run` names."""
     row = frame.iloc[0]
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
@@ -185,8 +185,8 @@ class Options(RunsPanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
-        exactly_one(self, "pick", "explicit")
-        exactly_one(self, "experiment", "explicit")
+        require_one(self, "pick", "explicit")
+        require_one(self, "experiment", "explicit")
         if "measure" in self.model_fields_set and self.hue is None:
             raise build_error("measure: needs hue")
         return self
@@ -195,7 +195,7 @@ class Options(RunsPanel):
 def data(results: Results | None, options: Options) -> pd.DataFrame:
     """What is drawn of a path: one row per point, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound: the exact shortest path,
+    Columns: those of `choose_run`, for a run; part (start, target, bound: the exact shortest path,
     hull, control or points, path, collision: a path's first one, if any, and appeared and vanished:
     centres of changed cells), x, y (in the workspace's unit). Without a run to show, only what
     belongs to the problem. Only curves within their hull have one, and polylines and curves with
@@ -216,7 +216,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
         ends = {"start": [start], "target": [target]}
-        return workspaces.places(ends | _parts(path, options.control))
+        return workspaces.list_points(ends | _list_parts(path, options.control))
     if options.hue is not None:
         alone = options.but(hue=None, control="none")
         groups = results.runs.groupby(options.hue)
@@ -228,7 +228,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         by_run = numbers.groupby(results.runs["id"]).first()
         frame = pd.concat(frames, ignore_index=True)
         return frame.assign(measure=frame["run"].map(by_run))
-    run, names = picked(results, options.pick)
+    run, names = choose_run(results, options.pick)
     problem = results.problems[names["problem"]]
     places = {"start": [problem.start], "target": [problem.target]}
     if options.changed_from is not None:
@@ -240,19 +240,19 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             row, column = np.nonzero(cells.occupied & ~others.occupied)
             places[part] = cells.in_units(np.column_stack([column, row]) + 0.5)
     if options.printed is not None and results.published is not None:
-        printed = published(results, "length", options.printed, "min")
+        printed = find_published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
     path = None if run is None else path_of(run)
     if path is not None:
         if options.context:
             places["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        places |= _parts(path, options.control)
+        places |= _list_parts(path, options.control)
         if not run["feasible"]:
             places["collision"] = [curves.point_at(path, run["collision_at"])]
-    return workspaces.places(places).assign(**names)[[*names, "part", "x", "y"]]
+    return workspaces.list_points(places).assign(**names)[[*names, "part", "x", "y"]]
 
 
-def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
+def _list_parts(path: Path, control: str) -> dict[str, np.ndarray]:
     """Points (n, 2) of a path by the part that they form."""
     import shapely
 
@@ -261,10 +261,10 @@ def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
         places["control" if control == "all" else control] = path.points
         if path.curve in curves.B_SPLINES and control == "all":
             places["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
-    return places | {"path": steps(path)}
+    return places | {"path": sample_path(path)}
 
 
-def steps(path: Path) -> np.ndarray:
+def sample_path(path: Path) -> np.ndarray:
     """Points (n, 2) along a path, close enough to look smooth."""
     pieces = len(curves.bezier_pieces(path))
     steps = pieces * max(1, _STEPS // pieces)
@@ -275,20 +275,20 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in their workspace if they have one."""
     note, unit = Note(), scene.unit
     if options.explicit is not None:
-        workspaces.scale(axes, unit)
+        workspaces.label_axes(axes, unit)
         axes.set_aspect("equal")
         axes.margins(0.06)
     else:
-        home = options.home(frame, scene)
+        home = options.find_workspace(frame, scene)
         unit = home.unit
-        workspaces.draw_home(axes, home)
+        workspaces.draw_workspace(axes, home)
         _draw_changes(axes, frame, home)
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
         style.draw_parts(axes, frame, LOOK, clip_on=options.view is not None)
         if options.explicit is None:
-            note = _note(frame, unit)
+            note = _write_note(frame, unit)
     workspaces.draw_letters(axes, frame, options.letters)
     if options.view is not None:
         axes.axis(options.view)
@@ -308,7 +308,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     """Draw the paths of all values of hue, each in its own style, and what belongs to their problem
     once; returns their measures.
     """
-    groups = style.groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options.where, scene)
     clauses = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(groups))
@@ -323,20 +323,22 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     there = frame.loc[frame["part"] == "path", options.hue].nunique()
     return Note(
         "" if there == len(groups) else f"{there} of {len(groups)} have a path",
-        f"{axis_label(options.measure, scene)}: {', '.join(clauses)}",
+        f"{describe_axis(options.measure, scene)}: {', '.join(clauses)}",
     )
 
 
-def _note(frame: pd.DataFrame, unit: str) -> Note:
+def _write_note(frame: pd.DataFrame, unit: str) -> Note:
     """The length of the path; for the notes its run, and what else there is to say of it."""
     row, parts = frame.iloc[0], set(frame["part"])
     if "path" not in parts:
-        return Note("no path", run_note(frame, "no path"))
+        return Note("no path", describe_run(frame, "no path"))
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
     clauses = []
     if len(control):
         clauses = [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
-    clauses.append(feasible_note(frame))
+    clauses.append(describe_feasible_runs(frame))
     if np.isfinite(row.get("printed", np.nan)):
         clauses.append(f"shortest printed {amount(format(row['printed'], '.2f'), unit)}")
-    return Note(f"length {amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses))
+    return Note(
+        f"length {amount(format(row['length'], '.2f'), unit)}", describe_run(frame, *clauses)
+    )

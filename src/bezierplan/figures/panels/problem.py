@@ -31,12 +31,12 @@ class Options(Panel):
 
 def data(problem: Problem, options: Options) -> pd.DataFrame:
     """Start and target: part, x, y, problem (its name)."""
-    return workspaces.ends(problem).assign(problem=problem.name)
+    return workspaces.list_ends(problem).assign(problem=problem.name)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data` in their workspace."""
-    workspaces.draw_home(axes, scene.places[options.problem].workspace)
+    workspaces.draw_workspace(axes, scene.places[options.problem].workspace)
     style.draw_parts(axes, frame, workspaces.ENDS, clip_on=False)
     workspaces.draw_letters(axes, frame, options.letters)
     return Note()

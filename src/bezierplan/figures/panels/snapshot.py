@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, only
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, find_only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import build_value_type, is_number
 
@@ -73,13 +73,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.running import execution
 
     for column in ("problem", "method"):
-        only(results.runs, column)
+        find_only(results.runs, column)
     run = picked(results.runs, options.pick.plain())
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
     ride, verdict = execution.drive_again(results.jobs[run["method"]], run, problem, world)
-    frame = moment(world, problem, ride, verdict, options.at)
+    frame = build_moment(world, problem, ride, verdict, options.at)
     return frame.assign(
         problem=run["problem"],
         method=run["method"],
@@ -88,7 +88,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     )
 
 
-def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
+def build_moment(
+    world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float
+) -> pd.DataFrame:
     """Rows of a moment, a share of the time of a drive."""
     import pandas as pd
 
@@ -109,7 +111,7 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         parts = [corners, circles]
     else:
         grid = world.workspace(time)
-        parts, bounds = [workspaces.parts(grid)], grid.bounds
+        parts, bounds = [workspaces.list_parts(grid)], grid.bounds
     driven = cut_motion(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
     places = [("way", driven), ("robot", driven[-1:])]
     plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
@@ -120,14 +122,14 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         hit = cut_motion(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         places.append(("collision", hit))
     for number, (part, points) in enumerate(places):
-        own = workspaces.places({part: points})
+        own = workspaces.list_points({part: points})
         parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
-    return pd.concat([*parts, workspaces.ends(problem)], ignore_index=True)
+    return pd.concat([*parts, workspaces.list_ends(problem)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    workspaces.shade(axes, frame)
-    workspaces.scale(axes, options.home(frame, scene).unit)
+    workspaces.draw_shapes(axes, frame)
+    workspaces.label_axes(axes, options.find_workspace(frame, scene).unit)
     circles = frame[frame["part"] == "circle"]
     if len(circles):
         arrows = _ARROW_STEPS * circles[["x_velocity", "y_velocity"]].to_numpy()
