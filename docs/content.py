@@ -1,5 +1,5 @@
-"""What the site shows: tables and figures of a scale, which mirror the papers', and
-as evidence the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
+"""The content of the site: tables and figures of a scale, which mirror the papers', and as evidence
+the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
 """
 
 import base64
@@ -34,7 +34,7 @@ PICTURES = {
 
 
 def find_results() -> tuple[str, Path]:
-    """The scale with the most runs that there is, and the folder of its results. Raises Fault."""
+    """Find the scale with the most runs that there is, and its folder of results. Raises Fault."""
     for scale in SCALES:
         if (ROOT / "results" / scale / "index.html").is_file():
             return scale, ROOT / "results" / scale
@@ -42,7 +42,8 @@ def find_results() -> tuple[str, Path]:
 
 
 def read_content() -> tuple[SimpleNamespace, Path]:
-    """Return what `build.gather_content` gives for the results that there are, and their folder.
+    """Read the content of the page of results, and return it with the folder of its results.
+
     Each study also gets its name, as people search for it; definition; data, of the viewer;
     picture, one of its figures. Raises Fault.
     """
@@ -67,12 +68,12 @@ def read_content() -> tuple[SimpleNamespace, Path]:
 
 
 def read_prose(key: str) -> str:
-    """What a paper is, or a planner does, in prose."""
+    """Read the text on a paper or planner that is written by hand."""
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
 
 
 def unpack_data(page: str) -> dict[str, Any]:
-    """The runs, problems and workspaces that a page of results holds for its viewer."""
+    """Return the runs, problems and workspaces that a page of results holds for its viewer."""
     packed = re.search(r'id="page-data">([^<]*)', page)[1]
     return json.loads(zlib.decompress(base64.b64decode(packed)))
 
@@ -82,8 +83,10 @@ def unpack_data(page: str) -> dict[str, Any]:
 
 
 def list_citations() -> list[dict[str, Any]]:
-    """This software, then the papers, as CITATION.cff lists them. Added: key; names, of the
-    authors; where, journal, version and year; doi, maybe none; bibtex.
+    """List this software, then the papers, as CITATION.cff has them.
+
+    Added keys: key; names, of the authors; where, journal, version and year; doi, maybe none;
+    bibtex.
     """
     content = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     year = content["date-released"].year
@@ -104,7 +107,7 @@ def list_citations() -> list[dict[str, Any]]:
 
 
 def format_authors(entry: dict[str, Any], between: str) -> str:
-    """The authors of an entry of CITATION.cff."""
+    """Return the names of the authors of an entry of CITATION.cff, with a text between them."""
     return between.join(
         each.get("name") or f"{each['given-names']} {each['family-names']}"
         for each in entry["authors"]
@@ -112,7 +115,7 @@ def format_authors(entry: dict[str, Any], between: str) -> str:
 
 
 def format_bibtex(entry: dict[str, Any]) -> str:
-    """An entry of CITATION.cff for BibTeX."""
+    """Return an entry of CITATION.cff for BibTeX."""
     kind = {"article": "article" if "journal" in entry else "unpublished"}
     authors = format_authors(entry, " and ")
     fields = {"author": f"{{{authors}}}" if entry["type"] == "software" else authors}

@@ -1,8 +1,8 @@
-"""A Sphinx extension: before a build it writes the pages of the site that follow from code, studies
-and results, into files that git ignores.
+"""A Sphinx extension that writes pages of the site before a build, into files that git ignores.
+Their content follows from code, studies and results.
 
 A page is a template: `templates/method.md.jinja` for a planner, `templates/paper.md.jinja` for a
-paper, and every `*.in.md`. What is said of a planner or paper by hand stands in `prose`.
+paper, and every `*.in.md`. Texts on a planner or paper that are written by hand stand in `prose`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json")
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Sphinx calls it once."""
+    """Register writer, copier and renderer of formulas; Sphinx calls this once."""
     app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
     app.connect("build-finished", lambda app, fault: fault or copy_results(Path(app.outdir)))
     # MathML, which browsers draw by themselves.
@@ -48,14 +48,14 @@ def setup(app: Any) -> dict[str, bool]:
 
 
 def write_formula(around: str, writer: Any, node: Any) -> None:
-    """Write a formula, with html around it."""
+    """Write a formula as MathML, with html around it."""
     text = latex2mathml.tex2mathml(node.astext(), as_block=around != "{}")
     writer.body.append(around.format(text))
     raise SkipNode
 
 
 def copy_results(site: Path) -> None:
-    """Put the page of results into the site, with the files that it links to."""
+    """Copy the page of results into the site, with the files that it links to."""
     _, folder = content.find_results()
     shutil.rmtree(site / "results", ignore_errors=True)
     for depth in ("", "*/", "*/*/"):
@@ -113,19 +113,19 @@ def write(folder: Path) -> None:
 
 
 def format_table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A table in Markdown."""
+    """Return a table in Markdown from its heads and rows."""
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     lines += ["| " + " | ".join(escape_cell(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
 
 
 def escape_cell(value: Any) -> str:
-    """A value as the text of a cell; a bar would end it."""
+    """Return a value as the text of a cell, in which a bar would end it."""
     return " ".join(str(value).replace("|", "\\|").split())
 
 
 def describe_setting(value: Any) -> str:
-    """The value of a setting.
+    """Return the value of a setting in words.
 
     >>> in_words({"smooth": "piecewise_quadratic"}), in_words(True), in_words(0.5)
     ('piecewise quadratic (smooth)', 'yes', '0.5')
@@ -140,7 +140,7 @@ def describe_setting(value: Any) -> str:
 
 
 def select_rows(study: SimpleNamespace, methods: set[str]) -> list[Any]:
-    """The rows of some methods in the table of a study's methods, the label first."""
+    """Return the rows of some methods in the table of a study's methods, the label first."""
     if study.families is None:
         return []
     labels = {study.job.labels.get(name, name) for name in methods}
@@ -148,8 +148,9 @@ def select_rows(study: SimpleNamespace, methods: set[str]) -> list[Any]:
 
 
 def read_page(key: str) -> str:
-    """The page of a paper that the repository keeps, without its title; links lead to the site's
-    pages, or to files of results.
+    """Read the page of a paper that the repository keeps, without its title.
+
+    Links lead to the site's pages, or to files of results.
     """
     text = (content.OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
     text = re.sub(r"\]\((?:claims|numbers)\.csv\)", "](../results/index.html#KEY){.external}", text)
@@ -157,7 +158,7 @@ def read_page(key: str) -> str:
 
 
 def read_origin_of_maps(study: SimpleNamespace) -> str:
-    """The text on where the maps of a study come from, if it has one, as a part of a page."""
+    """Read the text on where the maps of a study come from, if it has one, as a part of a page."""
     file = study.definition.folder / "workspaces" / "README.md"
     text = file.read_text(encoding="utf-8") if file.is_file() else ""
     lowered = re.sub(r"^(#+) ", r"#\1 ", re.sub(r"^# .*\n", "", text), flags=re.M)
@@ -169,7 +170,7 @@ def read_origin_of_maps(study: SimpleNamespace) -> str:
 
 
 def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
-    """What the page of a planner shows.
+    """Return the content of the page of a planner.
 
     users: study -> its methods. algorithms: the studies whose plain Python it is. settings: rows.
     open, achieved, resting: entries of assumptions, rows of the table of methods, and claims, each
@@ -213,19 +214,20 @@ def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNa
 
 
 def list_users(study: SimpleNamespace, planner: str) -> list[str]:
-    """The methods of a study that use a planner."""
+    """List the methods of a study that use a planner."""
     return [name for name in study.definition.methods if study.definition.planner(name) == planner]
 
 
 def find_algorithm(key: str) -> str:
-    """The method of a study whose plain Python `algorithms` has."""
+    """Find the method of a study whose plain Python `algorithms` has."""
     text = (HERE / "algorithms" / f"{key}.py").read_text(encoding="utf-8")
     return re.search(rf'^METHOD = "{key}/(\w+)"$', text, re.M)[1]
 
 
 def list_typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
-    """The median runs of some methods on each world that does not move: what the viewer of the page
-    of results has of a method there.
+    """List the median runs of some methods on each world that does not move.
+
+    The viewer of the page of results has their paths.
     """
     for each in study.shown:
         if each["median"] and each["problem"] and each["method"] in methods:
@@ -236,13 +238,13 @@ def list_typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any
 
 
 def is_not_proposed(found: tuple[SimpleNamespace, Any]) -> bool:
-    """Whether a run is not of the method that its paper proposes."""
+    """Tell whether a run is of another method than the one that its paper proposes."""
     study, (shown, *_) = found
     return shown["method"] != find_algorithm(study.key)
 
 
 def describe_value(study: SimpleNamespace, methods: list[str], setting: str) -> str:
-    """The values of a setting in the methods of a study: one for all of them, or each with its
+    """Return the values of a setting in the methods of a study: one for all, or each with its
     methods.
     """
     given: dict[str, list[str]] = {}
@@ -261,7 +263,7 @@ def describe_value(study: SimpleNamespace, methods: list[str], setting: str) -> 
 
 
 def select_claims(study: SimpleNamespace, methods: set[str]) -> list[Any]:
-    """The claims of a study whose checks name one of some methods."""
+    """Return the claims of a study whose checks name one of some methods."""
     checks = {claim.id: claim.checks for claim in study.definition.claims}
     named = {name: set(re.findall(r"\w+", repr(own))) for name, own in checks.items()}
     return [claim for claim in study.claims if named[claim["id"]] & methods]

@@ -25,8 +25,8 @@ WIDE, TALL = 8.8, 3.9
 
 
 def scale_numbers(numbers: pd.DataFrame) -> np.ndarray:
-    """Return where printed numbers lie on a scale on which ours is 0 and the ends of our range are
-    -1 and 1: (n,).
+    """Return the places (n,) of printed numbers on a scale from the low end of our range (-1) to
+    the high end (1), with ours at 0.
     """
     ours, printed = numbers["value_ours_scaled"], numbers["value_published"]
     below = printed < ours
@@ -41,8 +41,8 @@ def scale_numbers(numbers: pd.DataFrame) -> np.ndarray:
 
 
 def stack_dots(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where dots are drawn, and how many dots above or below the line each stands, so that
-    none hides another: (n,) each.
+    """Return the places of dots, and their levels above or below the line, (n,) each, so that none
+    hides another.
     """
     places, levels = places.copy(), np.zeros(len(places))
     columns = np.round(places / STEP)
@@ -56,8 +56,9 @@ def stack_dots(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figure:
-    """Return the picture. numbers: those that count, of `numbers.csv`. names: of papers, by study.
-    width: in inches.
+    """Draw all printed numbers, a strip per table.
+
+    numbers: rows of `numbers.csv` that count. names: study -> name of the paper. width: in inches.
     """
     ranged = numbers[numbers["low95_predicted"].notna() & numbers["position"].notna()]
     strips = [(place, own) for place, own in ranged.groupby(["study", "table"], sort=False)]
@@ -126,6 +127,7 @@ LOOKS = {
 
 
 def _draw_strip(axes: Axes, own: pd.DataFrame, places: np.ndarray, heights: np.ndarray) -> None:
+    """Draw the dots of a table, filled inside our range and pale where it is too wide to tell."""
     wide, inside = own["wide"].astype(bool), own["position"] == "inside"
     for chosen, (edge, face) in (
         (~wide & inside, LOOKS["inside our range"]),
@@ -137,6 +139,7 @@ def _draw_strip(axes: Axes, own: pd.DataFrame, places: np.ndarray, heights: np.n
 
 
 def _build_dots(x: object, y: object, edge: str, face: str) -> list[mpl.lines.Line2D]:
+    """Build round marks at places, with colours of edge and face."""
     look = {"marker": "o", "linestyle": "", "markersize": 4.6, "markeredgewidth": 0.9}
     return [mpl.lines.Line2D(x, y, markeredgecolor=edge, markerfacecolor=face, **look)]
 

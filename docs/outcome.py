@@ -111,8 +111,9 @@ def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts
 
 
 def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
-    """Copy the tables of results into docs/outcome. Raises FileNotFoundError if results are
-    missing. settings: those of methods.
+    """Copy the tables of results into docs/outcome.
+
+    settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     for name in ("numbers.csv", "methods.csv", WHOLES):
@@ -139,8 +140,8 @@ def build_paper_page(
     """Return the page of a paper, as markdown: the answer, its main claims, and its tables with the
     printed number beside ours in each cell.
 
-    folder: of the study's results. tables: those with printed numbers, name -> title, and how many
-    columns name the rows.
+    folder: the study's results. tables: name -> title, and how many columns name the rows, for
+    tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds"}
@@ -162,8 +163,9 @@ def build_paper_page(
 
 
 def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
-    """Return the page of the printed lengths that are lengths of paths that can be listed, as
-    markdown, from the audits in a folder.
+    """Return the page of printed lengths that are lengths of listed paths, as markdown.
+
+    folder: has the audits, from which the rows come.
     """
     picture = (
         "![The paths of Song 2016 on their grid, with the numbers of their cells](identified.png)"
@@ -199,8 +201,9 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
 
 
 def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the README's answers, picture and table of methods, from a folder's tables. labels: of
-    studies, by name.
+    """Return the README's answers, picture and table of methods, from a folder's tables.
+
+    labels: study -> name -> printed name.
     """
     numbers, claims, of_problems = (pd.read_csv(folder / name) for name in TABLES)
     answers = pd.read_csv(folder / TEXTS)
@@ -220,7 +223,10 @@ def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the table of the papers' methods, and what its columns mean. labels: by study."""
+    """Return the table of the papers' methods, and the meaning of its columns.
+
+    labels: study -> name -> printed name.
+    """
     rows = methods.of_families(of_problems)
     named = {
         f"{study}/{name}": f"{format_name(study)}, {label}"
@@ -232,7 +238,7 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[
 
 
 def format_name(key: str) -> str:
-    """Return the name of a study in a sentence.
+    """Return the name of a study for use in a sentence.
 
     >>> name_of("song2016"), name_of("meledje")
     ('Song 2016', 'Meledje')
@@ -242,7 +248,9 @@ def format_name(key: str) -> str:
 
 def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     """Return claims of scale extended with one more column after the verdict,
-    `verdict_papers_size`: that of the same claim at scale full.
+    `verdict_papers_size`.
+
+    It has the verdict of the same claim at scale full.
     """
     keys = ["study", "id", "variant"]
     theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
@@ -253,8 +261,9 @@ def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
 
 
 def replace_block(text: str, name: str, block: str) -> str:
-    """Return the text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises
-    ValueError if there is no such part.
+    """Return the text with the part between `<!-- name -->` and `<!-- /name -->` replaced.
+
+    Raises ValueError if there is no such part.
     """
     begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
     if not 0 <= text.find(begin) < text.find(end):

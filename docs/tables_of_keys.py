@@ -1,6 +1,6 @@
-"""The tables of keys in config/README.md, generated from the models, and those of columns in
-results/README.md, from their declarations: `python docs/tables_of_keys.py` updates them, and a
-test ensures that they are up to date.
+"""Tables of keys in config/README.md, generated from the models, and of columns in
+results/README.md, from their declarations. `python docs/tables_of_keys.py` updates them, and a test
+ensures that they are up to date.
 """
 
 import re
@@ -62,7 +62,7 @@ _ABOVE = ("kind", "test")
 
 
 def describe_keys(name: str) -> str:
-    """The tables of a file's keys, as Markdown."""
+    """Return the tables of a file's keys, as Markdown."""
     return "\n\n".join(
         f"{above}:\n\n{_format_by_kind(of) if isinstance(of, dict) else _format_table(of)}"
         for above, of in GROUPS[name]
@@ -70,7 +70,7 @@ def describe_keys(name: str) -> str:
 
 
 def _format_table(model: type[Model]) -> str:
-    """A row for each key."""
+    """Return a table with a row for each key of a model."""
     rows = [
         f"| {_format_name(name, field)} | {field.description} |"
         for name, field in list_keys(model).items()
@@ -79,7 +79,10 @@ def _format_table(model: type[Model]) -> str:
 
 
 def _format_by_kind(models: dict[str, type[Model]]) -> str:
-    """A row for each key, with the kinds in which it has this meaning; first those of all kinds."""
+    """Return a table with a row for each key and meaning, and the kinds that share it.
+
+    Keys of more than half of the kinds come first.
+    """
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
         for name, field in list_keys(model).items():
@@ -103,7 +106,7 @@ def _format_by_kind(models: dict[str, type[Model]]) -> str:
 
 
 def _format_name(name: str, field: FieldInfo) -> str:
-    """A required key is bold."""
+    """Return the name of a key, bold if it is required."""
     return f"**`{name}`**" if field.is_required() else f"`{name}`"
 
 
@@ -112,7 +115,7 @@ _PRINTED = {kind: word for word, kind in columns.VALUES.items()} | {columns.RunN
 
 
 def describe_columns(table: columns.Table) -> str:
-    """The table of columns of a kind of file, as Markdown."""
+    """Return the table of columns of a kind of file, as Markdown."""
     return _format_columns(
         [
             (name, kind, about.unit, _join_meaning(about))
@@ -122,7 +125,7 @@ def describe_columns(table: columns.Table) -> str:
 
 
 def describe_columns_of_drives(table: columns.Table) -> str:
-    """Likewise of drives: columns that mean something else, and those that only drives have."""
+    """Return columns that mean something else for drives, and those that only drives have."""
     every, own = columns.read_columns(*table.every), columns.read_columns(table.drives)
     other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
     return _format_columns(
@@ -137,11 +140,12 @@ def describe_columns_of_drives(table: columns.Table) -> str:
 
 
 def _join_meaning(about: columns.Column) -> str:
+    """Return the meaning of a column with its detail."""
     return "; ".join(filter(None, [about.meaning, about.detail]))
 
 
 def describe_columns_of_claims(tables: tuple[type, ...]) -> str:
-    """The table of columns of a table of claims, as Markdown."""
+    """Return the table of columns of a table of claims, as Markdown."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
         for name, (kind, about) in columns.read_columns(*tables).items()
@@ -150,7 +154,7 @@ def describe_columns_of_claims(tables: tuple[type, ...]) -> str:
 
 
 def _format_columns(rows: list[tuple[str, type, str, str]]) -> str:
-    """Name, type, unit and meaning of each column."""
+    """Return a table with name, type, unit and meaning of each column."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |"
         for name, kind, unit, meaning in rows
@@ -159,12 +163,12 @@ def _format_columns(rows: list[tuple[str, type, str, str]]) -> str:
 
 
 def update_keys(text: str) -> str:
-    """The text of config/README.md with tables that match the current models."""
+    """Return the text of config/README.md with tables that match the current models."""
     return _update_tables(text, {f"{name}.yaml": describe_keys(name) for name in GROUPS}, "keys")
 
 
 def update_columns(text: str) -> str:
-    """The text of results/README.md with tables that match the current declarations."""
+    """Return the text of results/README.md with tables that match the current declarations."""
     every = {name: describe_columns(table) for name, table in columns.TABLES.items()}
     drives = {
         f"{name} of drives": describe_columns_of_drives(table)
@@ -177,8 +181,8 @@ def update_columns(text: str) -> str:
 
 
 def _update_tables(text: str, tables: dict[str, str], what: str) -> str:
-    """A text with other tables between marks, such as `<!-- keys of claims.yaml -->` and `<!--
-    /keys -->`.
+    """Replace the tables between marks, such as `<!-- keys of claims.yaml -->` and `<!-- /keys
+    -->`.
     """
     for name, table in tables.items():
         marked = re.compile(

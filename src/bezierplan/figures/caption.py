@@ -16,10 +16,10 @@ class CaptionClaim(NamedTuple):
 
 
 class Caption(NamedTuple):
-    """A caption in parts.
+    """The parts of a caption.
 
-    remark: what the paper shows, where no claim is about it, or which runs means leave out.
-    behind: the runs that it shows.
+    remark: the paper's finding where no claim is about it, or the runs that means leave out.
+    behind: the runs that are shown.
     """
 
     title: str
@@ -35,7 +35,7 @@ class Caption(NamedTuple):
 
 
 def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
-    """Return a verdict in words with the runs that it rests on.
+    """Return a verdict in words with the number of runs behind it.
 
     >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
     ('contradicted by 4,000 runs', 'not decided by these 10 runs')
@@ -45,7 +45,7 @@ def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
 
 
 def describe_verdicts(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
-    """Return the verdict of many runs, after that of those shown if it differs.
+    """Return the verdict of many runs, preceded by that of the runs shown if the two differ.
 
     >>> tell_both("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'

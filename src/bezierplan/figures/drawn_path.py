@@ -36,10 +36,11 @@ def draw(
     map: bool = True,
     **look: Any,
 ) -> Axes:
-    """Draw a map, or a problem with a path in a look, its first collision, and the exact shortest
-    path (n, 2), on axes or on new ones, and return these.
+    """Draw a map, or a problem with a path, and return the axes.
 
-    map: whether the map, the ends and the exact shortest path are drawn.
+    axes: new ones if left out. shortest: points (n, 2) of the exact shortest path. collision: the
+    path's first one. map: if False, the map, the ends and the exact shortest path are left out.
+    look: properties of matplotlib for the path.
     """
     from bezierplan.figures.panels import paths, workspace
 
@@ -60,7 +61,7 @@ def draw(
 
 
 def add_legend(figure: Figure) -> None:
-    """Name each look of all panels once, below them."""
+    """Add one legend below all panels, in which each label stands once."""
     named: dict[str, Any] = {}
     for axes in figure.axes:
         handles, labels = axes.get_legend_handles_labels()
@@ -70,7 +71,7 @@ def add_legend(figure: Figure) -> None:
 
 
 def build_html(text: str, *draws: Callable[..., object]) -> str:
-    """Return what functions draw, each on axes of its own, and a text below, as HTML."""
+    """Return HTML that shows a picture, one axes for each function that draws, above a text."""
     drawn = io.BytesIO()
     save(drawn, *draws, **_NOTEBOOK)
     data = base64.b64encode(drawn.getvalue()).decode()
@@ -78,8 +79,10 @@ def build_html(text: str, *draws: Callable[..., object]) -> str:
 
 
 def save(file: File | io.BytesIO, *draws: Callable[..., object], **how: Any) -> None:
-    """Save what functions draw, the first ones of many, each on axes of its own, as a picture with
-    a legend, of the kind that the file's suffix names. how: options of matplotlib's `savefig`.
+    """Save a picture with a legend, in which each function draws on axes of its own.
+
+    file: its suffix names the kind of picture. draws: functions of axes, of which the first ones
+    are drawn. how: options of matplotlib's `savefig`.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure

@@ -22,7 +22,7 @@ _PARTS = TypeAdapter(
 
 
 def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
-    """The keys of both; mappings that stand in both are joined likewise."""
+    """Return the keys of a part and of all parts; a part's value wins, and mappings are merged."""
     both = {
         key: _merge_keys(part[key], common[key])
         for key in part.keys() & common.keys()
@@ -32,7 +32,11 @@ def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
 
 
 def _expand_entry(place: int, entry: Any) -> dict[str, Any]:
-    """What an entry at a place in a list of panels stands for, by the keys that lead there."""
+    """Return the panels of an entry in a list, each by the keys that lead to it.
+
+    An entry with `each` gives several panels. Raises an error of the file if `each` is no list of
+    at least two mappings.
+    """
     if not isinstance(entry, dict) or "each" not in entry:
         return {f"{place}": entry}
     shared = {key: value for key, value in entry.items() if key != "each"}
@@ -44,7 +48,10 @@ def _expand_entry(place: int, entry: Any) -> dict[str, Any]:
 
 
 def _read_panels(entries: Any) -> list[Panel]:
-    """The panels of a figure, each with its place in the list of the file."""
+    """Return the panels of a figure, each with its place in the list of the file.
+
+    Raises an error of the file for anything but a list, and for too many panels.
+    """
     if not isinstance(entries, list) or not entries:
         raise build_expectation("a list of panels")
     placed: dict[str, Any] = {}
@@ -72,40 +79,42 @@ class Figure(Model):
 
     @property
     def workspaces(self) -> list[str]:
-        """Names of the workspaces that it draws without runs."""
+        """Return the names of the workspaces that are drawn without runs."""
         return sorted({name for each in self.panels if (name := getattr(each, "workspace", None))})
 
     @property
     def problems(self) -> list[str]:
-        """Names of the problems that it draws without runs."""
+        """Return the names of the problems that are drawn without runs."""
         return sorted({name for each in self.panels if (name := getattr(each, "problem", None))})
 
     @property
     def rerun(self) -> list[str]:
-        """Names of the experiments whose runs it repeats, to draw what no table keeps."""
+        """Return the names of the experiments whose runs are repeated, because no table keeps what
+        is drawn.
+        """
         return sorted({panel.experiment for panel in self.panels if panel.rerun})
 
     @property
     def claims(self) -> list[str]:
-        """Ids of the claims that it draws under all alternatives."""
+        """Return the ids of the claims that are drawn under all alternatives."""
         return sorted({claim for panel in self.panels if (claim := getattr(panel, "claim", None))})
 
     @property
     def code(self) -> list[str]:
-        """Parts of a study's code that it needs."""
+        """Return the parts of a study's code that its panels call."""
         own = any(panel.kind == "own" for panel in self.panels)
         calls = any(getattr(panel, "data", None) for panel in self.panels)
         return ["metrics", *(["functions"] if calls else []), *(["panels"] if own else [])]
 
     @property
     def names_any(self) -> bool:
-        """Whether its legend names what a function returns, which may be any method."""
+        """Tell whether its legend names values that a function returns, which may be any method."""
         return any(
             getattr(panel, "data", None) and getattr(panel, "hue", None) for panel in self.panels
         )
 
     def draws(self, table: str) -> bool:
-        """Whether it draws the numbers of a published table."""
+        """Tell whether it draws the numbers of a published table."""
         return any(
             table
             in (getattr(panel, "printed", None), *convert_to_list(getattr(panel, "published", [])))

@@ -1,4 +1,4 @@
-"""Groups of runs as rows of what is drawn: one way for all kinds of panel that compare them."""
+"""Groups of runs as rows of a table: all kinds of panel that compare groups use these functions."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ def collect_rows(
     keys: list[str],
     rows: Callable[[Results], Iterable[dict[str, Any]]],
 ) -> pd.DataFrame:
-    """The rows of each group of runs with equal keys, with what says which runs these are.
+    """Return a table with the rows of each group of runs, in the order of the keys.
 
-    Columns: those of `find_constants`; the keys; runs and feasible_runs (counts); those of the
-    rows. Runs are in the order of their ids, so that no sum depends on the order in which chunks
+    keys: columns; runs with equal values in them form a group. rows: gives the rows of a group.
+    Columns of `find_constants` come first, then the keys, the columns of `count_runs`, and the
+    columns of the rows. Runs are sorted by id, so that no sum depends on the order in which chunks
     were read.
     """
     import pandas as pd
@@ -49,10 +50,10 @@ def collect_rows(
 
 
 def compute_summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
-    """A statistic of a metric for each group of runs with equal keys.
+    """Compute a statistic of a metric for each group of runs with equal keys.
 
-    Columns: those of `collect_rows`; n (runs that have the metric), value, low95 and high95 (its 95
-    % bootstrap interval), in the metric's unit.
+    Columns of `collect_rows` come first, then n (runs that have the metric), value, low95 and
+    high95 (ends of the 95 % bootstrap interval), in the metric's unit.
     """
 
     def build_row(group: Results) -> Iterable[dict[str, Any]]:
@@ -67,18 +68,20 @@ def compute_summary(results: Results, keys: list[str], metric: str, statistic: s
 
 
 def add_metric(results: Results, metric: str) -> Results:
-    """Results with a metric in the column value. Raises KeyError for an unknown metric."""
+    """Return results whose runs have a metric in the column value. Raises KeyError for an unknown
+    metric.
+    """
     numbers = metrics.values(results.runs, metric, results.problems)
     return results._replace(runs=results.runs.assign(value=numbers))
 
 
 def list_values(group: Results) -> np.ndarray:
-    """The sorted numbers (n,) of the runs that have the metric of `add_metric`."""
+    """Return the sorted numbers (n,) of the runs that have the metric of `add_metric`."""
     return np.sort(group.runs["value"].dropna().to_numpy())
 
 
 def find_constants(runs: pd.DataFrame) -> dict[str, Any]:
-    """Problem and method of runs, where they share one."""
+    """Return the problem and the method of runs, each if they share one."""
     return {
         column: runs[column].iloc[0]
         for column in ("problem", "method")
@@ -87,12 +90,12 @@ def find_constants(runs: pd.DataFrame) -> dict[str, Any]:
 
 
 def count_runs(runs: pd.DataFrame) -> dict[str, int]:
-    """How many runs there are, and how many of them are feasible."""
+    """Return how many runs there are, and how many of them are feasible."""
     return {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
 
 
 def find_limits(runs: pd.DataFrame) -> dict[str, float]:
-    """Values of `LIMITS` that all runs share, by name."""
+    """Return the values of `LIMITS` that all runs share, by name."""
     return {
         name: runs[name].iloc[0]
         for name in LIMITS
@@ -103,10 +106,11 @@ def find_limits(runs: pd.DataFrame) -> dict[str, float]:
 def find_published(
     results: Results, metric: str, table: str | None, statistic: str = "mean"
 ) -> list[float]:
-    """Values of a metric's statistic that a table of the paper prints for the problem, method and
-    settings of runs; a row's empty keys match all runs. None without a table.
+    """Return the values of a metric's statistic that a published table has for runs.
 
-    A number that is of a part of the runs only, such as one of several problems, is none of theirs.
+    They belong to the same problem, method and settings. A key that is empty in the table matches
+    all runs. A number for a part of the runs only, such as one of several problems, is left out. If
+    there is no table, the list is empty.
     """
     numbers, runs = results.published, results.runs
     if numbers is None or table is None:
@@ -120,8 +124,10 @@ def find_published(
 
 
 def describe_axis(column: str, scene: Any, statistic: str = "") -> str:
-    """Name and unit of what an axis shows; a column other than a metric has its unit in its label,
-    or is a count, or has no unit. Lengths of time have theirs in their numbers.
+    """Return name and unit of the values of a column, the label of an axis.
+
+    Only metrics have a unit here, since other columns have theirs in their labels. Lengths of time
+    carry it in their numbers (`show_metric`).
     """
     unit = find_unit(column, scene)
     beside = "" if unit in ("-", "s", "") else f" ({unit})"
@@ -131,19 +137,20 @@ def describe_axis(column: str, scene: Any, statistic: str = "") -> str:
 def show_metric(
     axes: Axes, metric: str, scene: Any, statistic: str = "", scale: str = "linear"
 ) -> None:
-    """Name the axis of y after what it shows, and scale it (`style.scale_axis`)."""
+    """Label the y axis with a metric and scale it (`style.scale_axis`)."""
     axes.set_ylabel(describe_axis(metric, scene, statistic))
     style.scale_axis(axes.yaxis, scale, find_unit(metric, scene))
 
 
 def find_unit(column: str, scene: Any) -> str:
-    """The unit of a metric; none for another column."""
+    """Return the unit of a metric, or an empty text for another column."""
     return metrics.unit(column, scene.unit) if column in metrics.METRICS else ""
 
 
 def describe_runs(frame: pd.DataFrame, statistic: str, where: str) -> str:
-    """The number of runs behind a statistic, from the columns of `compute_summary`, and the share
-    of them that is feasible.
+    """Say how many runs a statistic rests on, and which share of them is feasible.
+
+    frame: with the columns of `compute_summary`. where: the thing drawn for each group.
     """
     share = (100 * frame["feasible_runs"] / frame["runs"]).round()
     counted = _format_range(frame["runs"])
@@ -154,6 +161,6 @@ def describe_runs(frame: pd.DataFrame, statistic: str, where: str) -> str:
 
 
 def _format_range(numbers: pd.Series) -> str:
-    """The range of whole numbers, as printed."""
+    """Return the range of whole numbers, such as "10 to 30", or the one number."""
     low, high = numbers.min(), numbers.max()
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"

@@ -34,10 +34,10 @@ _LEVEL = ": "
 
 
 def stack_numbers(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """Return a table with the printed number above our range in each cell, or above ours without
-    one.
+    """Return a table with the printed number above our range in each cell.
 
-    numbers: its comparison, all text. heads: how many columns name the rows.
+    Where there is no range, our number stands below. numbers: the table's comparison, all text.
+    heads: how many columns name the rows.
     """
     cells = ours.iloc[:, heads:].to_numpy()
     over = np.where(cells == "", "-\n", "-\n" + cells)
@@ -48,9 +48,10 @@ def stack_numbers(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
 
 
 def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str] = ()) -> str:
-    """A table with rules as of a book: numbers on the right, and columns whose names begin alike
-    below a common head. table: all text, as in its csv file. label: what `\\ref` takes. notes: what
-    stands below it.
+    """Return a table as LaTeX, with numbers on the right, and a common head above columns whose
+    names begin alike.
+
+    table: all text, as in its csv file. label: for `\\ref`. notes: sentences below the table.
 
     >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
     >>> print(document(lengths, "Lengths in %", "tab:x"))
@@ -88,12 +89,12 @@ def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[
 
 
 def escape_signs(text: str) -> str:
-    """Text in which no sign is a command."""
+    """Return text in which LaTeX reads no sign as a command."""
     return text.translate(str.maketrans(_SIGNS))
 
 
 def _format_row(cells: Iterable[str]) -> str:
-    """Cells of a row; one of two lines is a stack."""
+    """Return a row of LaTeX from texts, in which a text of two lines becomes a stack."""
     texts = map(escape_signs, cells)
     stacks = [
         "\\shortstack[r]{" + text.replace("\n", " \\\\ ") + "}" if "\n" in text else text
@@ -103,7 +104,7 @@ def _format_row(cells: Iterable[str]) -> str:
 
 
 def _format_heads(names: list[str]) -> list[str]:
-    """The rows of heads: one, or two if neighbouring columns share the first part of their
+    """Return the rows of heads: one, or two if neighbouring columns share the first part of their
     names.
     """
     parts = [name.split(_LEVEL, 1) for name in names]
@@ -122,6 +123,6 @@ def _format_heads(names: list[str]) -> list[str]:
 
 
 def _is_number(column: pd.Series) -> bool:
-    """Whether a column of text holds numbers, and empty cells or dashes at most."""
+    """Tell whether a column of text holds numbers, and empty cells or dashes at most."""
     given = column[~column.isin(["", "-"])]
     return bool(len(given)) and bool(pd.to_numeric(given, errors="coerce").notna().all())

@@ -1,4 +1,6 @@
-"""The page of a scale as one file: what the tables say, in templates, with style and scripts."""
+"""The page of a scale as one file: templates are filled with the content of tables and carry styles
+and scripts.
+"""
 
 import base64
 import hashlib
@@ -41,12 +43,12 @@ def gather_content(
     evidence: reader.Evidence | None = None,
     results: Mapping[str, Files] = MappingProxyType({}),
 ) -> SimpleNamespace:
-    """What the templates show. data: what the viewer reads.
+    """Return the content of the templates, with `data` for the viewer's script.
 
-    folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    methods.csv, if the scale has them. proof: the file of the check of the runs
-    shown (`running.recheck`), if there is one. evidence: as for `reader.read_study_results`.
-    results: of the experiments whose runs the viewer shows, by study/experiment.
+    folder: the scale's results. summary: the files numbers.csv, claims.csv and methods.csv of all
+    studies, if the scale has them. proof: the file of the check of the runs shown
+    (`running.recheck`), if there is one. evidence: see `reader.read_study_results`. results: by
+    study/experiment, the files of the experiments whose runs the viewer shows.
     """
     tables = [reader.read(file) for file in summary] if summary else None
     studies = reader.read_study_results(job, folder, tables, evidence)
@@ -81,8 +83,8 @@ def gather_content(
 def _replace(
     tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, studies: list[str]
 ) -> list[pd.DataFrame] | None:
-    """Return numbers, claims and methods of all studies, those of the evidence in place of the
-    scale's own for some studies.
+    """Return numbers, claims and methods of all studies, with the evidence in place of the scale's
+    own for some studies.
     """
     if not evidence:
         return tables
@@ -92,15 +94,15 @@ def _replace(
 
 
 def _read_check(file: Path) -> dict[str, Any]:
-    """What the page says of the check: with the SHA-256 of its file, which lists that of every
-    other file behind the page.
+    """Read the file of the check, and add the SHA-256 of that file, which lists all other files
+    behind the page.
     """
     content = file.read_bytes()
     return json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
 
 
 def _merge_workspaces(data: dict[str, dict]) -> None:
-    """Leave out workspaces that equal an earlier one, which their problems then name."""
+    """Remove workspaces that equal an earlier one, and let their problems name that one."""
     first: dict[str, str] = {}
     names = {
         name: first.setdefault(json.dumps(shapes), name)
@@ -112,7 +114,7 @@ def _merge_workspaces(data: dict[str, dict]) -> None:
 
 
 def _write_headline(tables: list | None, studies: Iterable[str]) -> list[str]:
-    """Return the sentences on numbers and claims of the studies of the page, if there are any."""
+    """Return the sentences on numbers and claims of the page's studies, if there are any."""
     if not tables:
         return []
     numbers, claims = (table[table["study"].isin([*studies])] for table in tables[:2])
@@ -121,7 +123,8 @@ def _write_headline(tables: list | None, studies: Iterable[str]) -> list[str]:
 
 
 def render_page(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
-    """The page, or what another template shows of it, as one html text that needs no other file.
+    """Return the page, or what another template shows, as html that needs no other file.
+
     folder: where the pictures of its figures are.
     """
     text = build_environment(page, folder).get_template(template).render(page=page)
@@ -132,7 +135,11 @@ def render_page(page: SimpleNamespace, folder: Path, template: str = "page.html.
 
 
 def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
-    """What templates can use, those of this folder and of more folders: a `jinja2.Environment`."""
+    """Return a `jinja2.Environment` with all that templates can use.
+
+    Templates are those of this folder and of more folders. folder: where the pictures of figures
+    are.
+    """
     import jinja2
     from markupsafe import Markup
 
@@ -176,27 +183,27 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
 
 
 def pack(value: Any) -> str:
-    """Text, or JSON of another value, that the page's script unpacks."""
+    """Return text, or another value as JSON, compressed for the page's script to unpack."""
     if not isinstance(value, str):
         value = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return base64.b64encode(zlib.compress(value.encode(), 9)).decode()
 
 
 def read_size(drawing: str) -> list[int]:
-    """Width and height of an svg text, in points."""
+    """Read width and height of an svg text, in points."""
     found = (re.search(rf'\b{name}="([\d.]+)pt"', drawing) for name in ("width", "height"))
     return [round(float(each[1])) for each in found]
 
 
 def format_value(value: Any, digits: int = 4) -> str:
-    """A value as printed: a number to some significant digits, an unknown one as a dash."""
+    """Return a value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
     return naming.number(value, digits) if isinstance(value, float) else str(value)
 
 
 def label_keys(text: Any, labels: dict[str, str]) -> str:
-    """Text in which the keys of methods and metrics are as printed.
+    """Return text with the keys of methods and metrics replaced by their printed names.
 
     >>> labelled("the method mga_c of a_study", {"mga_c": "MGA-C"})
     'the method MGA-C of a_study'
@@ -205,15 +212,16 @@ def label_keys(text: Any, labels: dict[str, str]) -> str:
 
 
 def count_verdicts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
-    """Return how many rows there are of each verdict, in the order of `words.WORDS`."""
+    """Count the rows of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
     names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 
 def describe_positions(cells: Iterable[reader.Row]) -> str:
-    """Return how many numbers of a table lie inside our range, and why they prove nothing, where
-    all share the reason.
+    """Say how many numbers of a table lie inside our range.
+
+    If all numbers share the reason for which this proves nothing, the text ends with it.
     """
     placed = [cell for cell in cells if cell["bar"]]
     if not placed:
@@ -232,12 +240,12 @@ def describe_positions(cells: Iterable[reader.Row]) -> str:
 
 
 def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
-    """Numbers as rows and columns: a row for each combination of keys, the default reading
-    first, a column for each metric and statistic.
+    """Lay the numbers of a table out in rows and columns.
 
-    head: keys and columns as printed. rows: whether each is of the default reading, its keys
-    with the addresses of methods that they may name, its cells. same: keys that all rows share.
-    decimals: of each column.
+    A row is a combination of keys, those of the default reading first; a column is a metric with a
+    statistic. head: printed names of keys and columns. rows: for each a flag of the default
+    reading, its keys (each with the address of a method that it may name), and its cells. same:
+    keys that all rows share. decimals: a number for each column.
     """
     numbers = table["numbers"]
     values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
@@ -279,10 +287,11 @@ def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
 
 
 def _format_key(key: str, value: Any, labels: dict[str, str]) -> str:
-    """A key in a column that names it, where a number stands alone."""
+    """Return a key for a column that names it, so that a number stands alone."""
     plain = isinstance(value, int | float)
     return format_value(value) if plain else reader.format_key(key, value, labels)
 
 
 def _count_decimals(value: float | None) -> int:
+    """Return how many decimals a value needs, at most four."""
     return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))

@@ -1,5 +1,5 @@
-"""What the page shows of each study: rows of the csv files of a scale, as mappings whose empty
-cells are None. Columns keep their names; what is added to a row stands in the functions below.
+"""The content of the page for each study: rows of a scale's csv files, as mappings whose empty
+cells are None. Columns keep their names, and functions say which keys they add to a row.
 """
 
 import json
@@ -23,25 +23,27 @@ Row = dict[str, Any]
 
 
 def read(file: str | Path) -> pd.DataFrame:
-    """A csv file in which only an empty cell is a missing value."""
+    """Read a csv file, in which only an empty cell is a missing value."""
     texts = {"as_printed": str}
     return pd.read_csv(file, dtype=texts, keep_default_na=False, na_values=[""], low_memory=False)
 
 
 def list_rows(table: pd.DataFrame) -> list[Row]:
-    """The rows of a table; None for a missing or infinite value."""
+    """Return the rows of a table, with None for a missing or infinite value."""
     table = table.replace([np.inf, -np.inf], np.nan).astype(object)
     return table.where(table.notna(), None).to_dict("records")
 
 
 def select_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
-    """The rows of a study; none of no table."""
+    """Return the rows of a study, or an empty table if there is no table."""
     return pd.DataFrame() if table is None else table[table["study"] == study]
 
 
 class Evidence(NamedTuple):
-    """What many runs say of all studies: their numbers, claims, methods by problem, comparisons of
-    claims, and level and order of columns.
+    """The results of many runs of all studies.
+
+    They are numbers, claims, methods by problem, comparisons of claims, and level and order of
+    columns.
     """
 
     numbers: pd.DataFrame
@@ -51,7 +53,7 @@ class Evidence(NamedTuple):
     wholes: pd.DataFrame
 
     def select(self, studies: list[str]) -> "Evidence":
-        """Return that of some studies."""
+        """Return the evidence about some studies."""
         return Evidence(*(table[table["study"].isin(studies)] for table in self))
 
 
@@ -61,10 +63,10 @@ def read_study_results(
     summary: list[pd.DataFrame] | None,
     evidence: Evidence | None = None,
 ) -> dict[str, SimpleNamespace]:
-    """All studies, from the files in the folder of a scale, which are the mirror of the papers.
+    """Read the results of all studies from the folder of a scale.
 
-    summary: numbers, claims and methods by problem of all studies, if the scale has them.
-    evidence: what stands in place of the scale's own positions and verdicts.
+    summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
+    stands in place of the scale's own positions and verdicts.
     """
     numbers, _, measured = summary or [None] * 3
     pages = {}
@@ -98,7 +100,9 @@ def read_study_results(
 
 
 def _describe_families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
-    """Return the methods of a study on each family of its problems, as words; None without."""
+    """Return the methods of a study on each family of its problems, as words; None if there are
+    none.
+    """
     if of_problems.empty:
         return None
     rows = methods.of_families(of_problems)
@@ -106,7 +110,7 @@ def _describe_families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.
 
 
 def _describe_method(study: str, name: str, method: Any) -> Row:
-    """A method, with the paragraphs on what its planner does."""
+    """Return a method, with the paragraphs on its planner."""
     paragraphs = method.about.split("\n\n")
     about = [" ".join(paragraph.replace("`", "").split()) for paragraph in paragraphs]
     return method._asdict() | {
@@ -117,8 +121,8 @@ def _describe_method(study: str, name: str, method: Any) -> Row:
 
 
 def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
-    """A table or figure: the parts of its caption, its address, and the path of its files without
-    endings.
+    """Return the caption's parts of a table or figure, its address, and the path of its files
+    without endings.
     """
     return artefact.caption._asdict() | {
         "name": name,
@@ -129,7 +133,7 @@ def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
 
 
 def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
-    """A figure, with the runs that it shows and what can be counted in it, in words."""
+    """Return a figure with its notes: the runs that it shows, and what can be counted in it."""
     row = _describe_artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
     _, runs, *counts = text.split("\n", 2)
@@ -145,7 +149,7 @@ def _describe_table(
     counted: pd.DataFrame,
     evidence: Evidence | None,
 ) -> Row:
-    """A table: its numbers next to published ones, or its columns and rows."""
+    """Return a table: its numbers next to published ones, or its columns and rows."""
     row, spec = _describe_artefact(study, name, artefact), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
@@ -166,7 +170,7 @@ def _describe_table(
 
 
 def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
-    """Return what differs between columns of printed means and ours: their order, or level."""
+    """Say how columns of printed means differ from ours, in order or level."""
     told = []
     for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
         head = [_format_heading(row["metric"], "mean", spec, labels)]
@@ -184,8 +188,10 @@ def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str])
 
 
 def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
-    """A table as the paper prints it. head: of its columns. rows: the names of each, and its cells:
-    printed, ours, and the number (None where there is none).
+    """Lay a table out as the paper prints it.
+
+    head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
+    the number is None if nothing is published.
     """
     ours = pd.read_csv(file, dtype=str, keep_default_na=False)
     heads = len(spec.index)
@@ -206,10 +212,12 @@ def _list_numbers(
     many: pd.DataFrame,
     labels: dict[str, str],
 ) -> list[Row]:
-    """The cells of a table: those with a published number, and what other methods have in the same
-    column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
-    runs would print it), apart (relative to the published number), bar (`charts.add_bars`). many:
-    the rows of the evidence, in place of the table's own.
+    """Return the cells of a table that have a published number, and other methods' cells in the
+    same columns.
+
+    many: rows of the evidence, which replace the table's own values. Added keys: keys, row, column
+    (printed names), address, beside (ours for the paper's number of runs), apart (relative to the
+    published number), bar (`charts.add_bars`).
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -251,15 +259,16 @@ def _compute_distance(cell: Row) -> Row:
 
 
 def format_key(column: str, value: Any, labels: dict[str, str]) -> str:
-    """The value of a key column as printed; a number is named."""
+    """Return the value of a key column as printed; a number stands with its name."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
     return naming.printed(value, column, labels)
 
 
 def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
-    """Metric and statistic as the table prints them; one that the paper does not state stands
-    beside our median.
+    """Return metric and statistic as the table prints them.
+
+    An unstated statistic stands beside our median.
     """
     beside = {statistic, "median"} if statistic == "unstated" else {statistic}
     for value in spec.values:
@@ -269,7 +278,7 @@ def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, 
 
 
 def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
-    """Claims in their primary variant, each with its other variants (`others`)."""
+    """Return claims in their primary variant, each with its other variants (`others`)."""
     if "claims" not in files:
         return []
     compared: dict[tuple, list[Row]] = {}
@@ -290,7 +299,10 @@ def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame])
 
 
 def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
-    """A claim. Added: address, rule (what its count means), why, comparisons, shown_in."""
+    """Return a claim with its comparisons.
+
+    Added keys: address, rule (the meaning of its count), why, comparisons, shown_in.
+    """
     described = content.claims.get(claim["id"])
     checks = described.checks if described else []
     for row in comparisons:
@@ -310,8 +322,9 @@ def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: Stu
 def _explain_verdict(
     claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]
 ) -> str:
-    """The sentence that says why, from the decisive comparison; empty without one, or for a check
-    that the study has no more.
+    """Return the sentence on the decisive comparison, which says why.
+
+    It is empty if there is none, or if the study does not have the check any more.
     """
     row = next((each for each in comparisons if each["decisive"]), None)
     if row is None or row["check"] > len(checks):
@@ -320,7 +333,10 @@ def _explain_verdict(
 
 
 def _describe_assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
-    """A detail that the paper leaves open; default: one for all, or each with what has it."""
+    """Return a detail that the paper leaves open.
+
+    default: one for all, or each with the names that have it.
+    """
     default = row["default"]
     if isinstance(default, dict):
         values = {labels.get(name, name): value for name, value in default.items()}

@@ -1,5 +1,5 @@
-"""The runs that the viewer shows: of each method on each problem, and on all of an experiment, some
-of the feasible and the failed. What is made here becomes JSON in the page, for its script.
+"""The runs that the viewer shows: some feasible and some failed runs of each method, on each
+problem and in an experiment as a whole. The page's script reads them as JSON.
 
 Runs are ranked by their length over the exact bound of their problem, so that those on different
 problems compare.
@@ -44,8 +44,10 @@ Row = dict[str, Any]
 def choose_runs(
     study: str, experiment: str, content: ExperimentView, inputs: Files
 ) -> tuple[list[Row], Row]:
-    """The runs of an experiment that the viewer shows: which of each method on each problem; and
-    the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
+    """Choose the runs of an experiment that the viewer shows.
+
+    Returns which runs these are, by method and problem; and `runs`, `problems` and `workspaces` by
+    name. All other runs give only their lengths.
     """
     bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
@@ -102,7 +104,7 @@ def choose_runs(
 
 
 def _read_traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
-    """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
+    """Read the places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
     files = [Path(chunk).with_suffix(".traces.parquet") for chunk in chunks]
     tables = [
         parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)])
@@ -116,7 +118,10 @@ def _read_traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
 
 
 def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Row:
-    """Which runs of a method are shown. gap: that of the median run; None without feasible runs."""
+    """Choose the best, the median, the worst and some failed runs of a method.
+
+    gap: the median run's; None if no run is feasible.
+    """
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
     ordered = sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
@@ -136,19 +141,20 @@ def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.
 
 
 def _list_shapes(problem: Problem) -> dict[str, Any]:
+    """Return the workspace of a problem as plain values with its bounds."""
     shapes = _round_json(files.write_json(problem.workspace))
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
 def _round_json(text: str) -> dict[str, Any]:
-    """The content of JSON with numbers of seven digits."""
+    """Return the content of JSON with numbers of seven digits."""
     return json.loads(text, parse_float=lambda number: float(f"{float(number):.7g}"))
 
 
 def _describe_problem(
     workspace: str, problem: Problem, world: worlds.World | None, bound: pd.Series
 ) -> Row:
-    """A workspace with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
+    """Return a problem with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
     size = _measure_side(problem.workspace.bounds)
     path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
     return {
@@ -162,9 +168,10 @@ def _describe_problem(
 
 
 def _describe_world(world: worlds.World) -> Row:
-    """How obstacles move, time in steps: circles (x, y, velocities, radius), whose centres are
-    reflected at walls; or cells that change at some moments, counted row by row from the top left
-    one.
+    """Return how obstacles move, with time in steps.
+
+    Circles have x, y, velocities and radius, and walls reflect their centres. Cells change at some
+    moments; they are counted row by row from the top left one.
     """
     if isinstance(world, worlds.MovingCircles):
         content = _round_json(worlds.to_json(world))
@@ -177,8 +184,10 @@ def _describe_world(world: worlds.World) -> Row:
 
 
 def _describe_drive(path: list[float], trace: np.ndarray, row: Row, pace: float) -> Row:
-    """What belongs to a drive: the distance along its path at each step; the place of its first
-    collision is where the robot was then.
+    """Return the additions to a run that is a drive, such as the distance along its path at each
+    step.
+
+    The place of its first collision is the robot's place at that time.
     """
     size = float(np.ptp(trace, axis=0).max()) or 1.0
     steps, collision = float(row["steps"]), None
@@ -195,10 +204,10 @@ def _describe_drive(path: list[float], trace: np.ndarray, row: Row, pace: float)
 
 
 def _measure_way(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
-    """Length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it, which
-    covers at most a pace from one to the next.
+    """Return the length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it.
 
-    A way may cross itself, so each place is looked for within a pace of the one before.
+    pace: the longest way from one place to the next. A way may cross itself, so each place is
+    searched for only within a pace of the one before.
     """
     import shapely
     from shapely.ops import substring
@@ -213,7 +222,10 @@ def _measure_way(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray
 
 
 def _describe_run(row: Row, bounds: Bounds, problem: str) -> Row:
-    """A run, its points rounded to what a picture shows. claimed: the planner's own verdict."""
+    """Return a run with its points rounded to the resolution of the picture.
+
+    claimed: the planner's own verdict.
+    """
     from bezierplan.figures.panels.paths import sample_path
 
     path, size = results.path_of(row), _measure_side(bounds)
@@ -243,21 +255,23 @@ def _describe_run(row: Row, bounds: Bounds, problem: str) -> Row:
 
 
 def _measure_side(bounds: Bounds) -> float:
+    """Return the length of the longer side of a workspace."""
     return max(bounds[1] - bounds[0], bounds[3] - bounds[2])
 
 
 def _round_finite(value: float) -> float | None:
+    """Return a number of seven digits, or None for one that is missing or infinite."""
     return float(f"{value:.7g}") if value is not None and np.isfinite(value) else None
 
 
 def _round_points(points: np.ndarray, size: float) -> list[float]:
-    """Points (n, 2) as x0, y0, ..., to about a ten-thousandth of the workspace."""
+    """Return points (n, 2) as x0, y0, ..., rounded to a ten-thousandth of the workspace."""
     decimals = max(0, 4 - int(np.floor(np.log10(size))))
     return np.round(points, decimals).ravel().tolist()
 
 
 def _reduce_points(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """As few of the points (n, 2) of a line as keep within a tolerance of it."""
+    """Return as few points of a line (n, 2) as keep within a tolerance of it."""
     import shapely
 
     return (
@@ -268,8 +282,8 @@ def _reduce_points(points: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def _reduce_history(history: np.ndarray) -> list[tuple[int, float]]:
-    """Generation and objective where the best objective changes, and at the end; thinned out if
-    there are many.
+    """Return (generation, objective) at each change of the best objective and at the end, at most
+    `_MOST_STEPS`.
     """
     values = np.asarray(history, dtype=float)
     known = np.flatnonzero(np.isfinite(values))

@@ -1,4 +1,4 @@
-"""The curvature along the path of one picked run, with the limit that the paper claims for it."""
+"""The curvature along the path of one chosen run, with the limit that the paper claims for it."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per sample of a path, uniform in its parameter; columns: those of `paths.choose_run`,
-    quantity, limit, pieces (that the path is made of), t (0 to 1), value.
+    """Return one row per sample of a path, uniform in its parameter.
 
-    The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the
-    speed is zero. Without a path, one row without t and value.
+    Columns of `paths.choose_run` come first, then quantity, limit, pieces (of the path), t (0 to
+    1), value. The value of curvature has its sign, with left turns positive, in 1/unit, and is
+    empty where the speed is zero. If there is no path, one row has neither t nor value.
 
     Raises ValueError unless all runs are of one problem and one method.
     """
@@ -63,6 +63,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the curvature with its limits, and mark the largest magnitude."""
     row = frame.iloc[0]
     unit = options.find_workspace(frame, scene).unit
     axes.set_xlim(0, 1)
@@ -82,8 +83,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
-    """Mark the value of largest magnitude and fit the scale to it; returns what to say about it and
-    about the samples left out.
+    """Mark the value of largest magnitude and fit the scale to it.
+
+    Returns a note about that value and about the samples left out.
     """
     highest = frame.loc[frame["value"].abs().idxmax()]
     limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])

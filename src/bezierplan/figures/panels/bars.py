@@ -1,5 +1,5 @@
-"""A metric's statistic as bars with intervals, for the values of one column, side by side for those
-of another; with the numbers that the paper prints.
+"""A metric's statistic as bars with intervals: a place for each value of one column, a bar at it
+for each value of another, and the numbers that the paper prints.
 """
 
 from __future__ import annotations
@@ -51,12 +51,12 @@ class Options(MetricPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per bar; columns: those of `groups.compute_summary`, with x and hue by their own
-    names, bound, and published.
+    """Return one row per bar.
 
-    bound is the mean exact shortest length of the problems of a bar's feasible runs (those that
-    count for a length), in units; empty for metrics that it does not bound. published is the number
-    that the paper prints, if it prints one.
+    Columns of `groups.compute_summary` come first, with x and hue by their own names, then bound
+    and published. bound is the mean exact shortest length of the problems of a bar's feasible runs
+    (those that count for a length), in units; it is empty for metrics that it does not bound.
+    published is the printed number, if there is one.
 
     Raises KeyError for an unknown metric or column.
     """

@@ -58,14 +58,15 @@ class Options(MetricPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per part of a box; columns: those of `groups.collect_rows` by `by`, part, value.
+    """Return one row per part of a box.
 
-    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value
-    beyond the whiskers; mean; published, the mean that the paper prints, and published_end, the
-    least and the largest value that it prints. Values are in the metric's unit, for runs that have
-    the metric. A group without such runs has a row: none. Rows without a group: limit; and, with
-    context, reference (the best known path of the kind) and bound (the exact shortest length), each
-    if all runs share it.
+    Columns of `groups.collect_rows` by `by` come first, then part and value. Parts: low and high
+    (ends of whiskers), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean;
+    published, the mean that the paper prints, and published_end, the least and the largest value
+    that it prints. Values are in the metric's unit, of runs that have the metric. A group that has
+    no such run has one row with the part none. Rows of no group: limit; and, with context,
+    reference (the best known path of the kind) and bound (the exact shortest length), each if all
+    runs share it.
 
     Raises KeyError for an unknown metric or column.
     """
@@ -92,7 +93,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def _compute_box(numbers: np.ndarray) -> list[tuple[str, float]]:
-    """Parts of the box of sorted values (n,) and their positions; none without values."""
+    """Compute the parts of the box of sorted values (n,), none if there are no values."""
     if not len(numbers):
         return []
     first, median, third = np.quantile(numbers, [0.25, 0.5, 0.75])

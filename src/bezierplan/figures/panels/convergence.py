@@ -1,4 +1,4 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or one
+"""The best objective of each generation: one chosen run with median and spread of all runs, or one
 line per method or value of a factor.
 
 A study's label of `generation` names the axis, such as `iteration` for a swarm.
@@ -64,11 +64,12 @@ class Options(RunsPanel):
 
     @property
     def one(self) -> tuple[str, ...]:
-        """Columns of which the runs have one value, if one of them is picked."""
+        """Return the columns in which the runs have one value, if one of them is chosen."""
         return ("problem", "method") if self.pick else ()
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
+        """Refuse both or neither of pick and hue, and keys that need hue."""
         require_one(self, "pick", "hue")
         for key in {"statistic", "printed"} & self.model_fields_set:
             if self.hue is None:
@@ -77,19 +78,18 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per generation, and with `hue` also per value of it. A run that stopped early keeps
-    its last objective.
+    """Return one row per generation, and with `hue` also per value of it.
 
-    Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact
-    shortest length.
+    A run that stopped early keeps its last objective. Objectives are the planner's own, in units,
+    over all runs, feasible or not; bound is the exact shortest length.
 
-    With `pick`, columns: those of `paths.choose_run`, generation, objective (of the picked run;
-    empty without one), median, quartile1 and quartile3, bound. With `hue`, columns: those of
-    `groups.collect_rows`, generation, objective (the statistic), low95 and high95 (its 95 %
-    bootstrap interval), bound (empty if problems differ in it). With `context`, a column reference:
-    the length of the best known path of the methods' own kind, empty if problems differ in it. With
-    `printed`, a column of that name: the mean that this published table has for a group, in the row
-    of the last generation.
+    With `pick`, columns of `paths.choose_run` come first, then generation, objective (of the chosen
+    run; empty if there is none), median, quartile1 and quartile3, bound. With `hue`, columns of
+    `groups.collect_rows` come first, then generation, objective (the statistic), low95 and high95
+    (its 95 % bootstrap interval), bound (empty if problems differ in it). With `context`, a column
+    reference: the length of the best known path of the methods' own kind, empty if problems differ
+    in it. With `printed`, a column of that name: the mean that this published table has for a
+    group, in the row of the last generation.
 
     Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless
     all runs are of one problem and one method.
@@ -115,6 +115,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
+    """Return the history of a chosen run beside the quartiles of all runs."""
     import pandas as pd
 
     run, names = choose_run(results, pick)
@@ -136,8 +137,9 @@ def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.Dat
 def _build_rows_of_group(
     group: Results, options: Options, generations: int
 ) -> Iterable[dict[str, Any]]:
-    """Each generation of a group, with the interval of its statistic from the same draws of
-    runs.
+    """Yield each generation of a group with the interval of its statistic.
+
+    All generations use the same draws of runs, so that the ends of the interval are smooth lines.
     """
     statistic, hue = options.statistic, options.hue
     histories = _extend_histories(group.runs, generations)
@@ -159,7 +161,7 @@ def _build_rows_of_group(
 
 
 def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
-    """Histories (runs, generations), each extended with its last value."""
+    """Return histories (runs, generations), each extended with its last value."""
     return np.array(
         [
             np.pad(history, (0, generations - len(history)), mode="edge")
@@ -170,6 +172,7 @@ def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the histories with the limits that all runs share."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(naming.column_name("generation", scene.labels))
@@ -185,6 +188,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
+    """Draw the history of a run, with context over the spread of all runs."""
     generation = frame["generation"]
     if context:
         band = {"color": style.LIGHT_BLUE, "linewidth": 0, "label": "quartiles of all runs"}
@@ -196,6 +200,7 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw a line for each group, with as many intervals as stay legible."""
     groups = style.list_groups(frame, options.hue, options.where, scene)
     for number, (_, rows, look) in enumerate(groups):
         step = max(1, len(rows) // _MARKS)

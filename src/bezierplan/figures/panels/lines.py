@@ -54,7 +54,7 @@ _MOST_JOINED = 100
 
 
 class Options(MetricPanel, TablePanel):
-    """Keys of a panel: of runs, or of a table."""
+    """Keys of a panel of lines, which are of runs or of a table."""
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     data: Function = Field(
@@ -76,22 +76,25 @@ class Options(MetricPanel, TablePanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
+        """Refuse both or neither of experiment and data, and printed numbers of a table."""
         require_one(self, "experiment", "data")
         if self.printed is not None and self.experiment is None:
             raise build_error("printed: needs experiment")
         return self
 
     def source(self, sources: Sources) -> Results | pd.DataFrame:
-        """Runs, or the rows of a table."""
+        """Return the runs, or the rows of a table."""
         return (RunsPanel if self.experiment else TablePanel).source(self, sources)
 
 
 def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per point; columns: hue (if one is given) and x, both by their own names; part
-    (statistic, published or value), value.
+    """Return one row per point.
 
-    For runs: the columns of `groups.compute_summary` for the statistic. For a table: the column
-    `metric`, as is. Raises KeyError for an unknown metric or column.
+    Columns: hue (if one is given) and x, both by their own names; part (statistic, published or
+    value), value. Rows of runs have the columns of `groups.compute_summary` for the statistic. Rows
+    of a table have the column `metric` as it is.
+
+    Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -109,6 +112,7 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw a line for each value of hue, with intervals and published means if it is of runs."""
     hue, x = options.hue, options.x
     if hue is None:
         # The look of the method of all runs.
@@ -148,8 +152,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
-    """A line of marks with their intervals; hollow for statistics of the feasible runs alone, where
-    there are others: a method that rarely succeeds may have the best mean.
+    """Draw a line of marks with intervals.
+
+    Marks are hollow for statistics of feasible runs alone if there are other runs, because a method
+    that rarely succeeds may have the best mean.
     """
     axes.vlines(frame[x], frame["low95"], frame["high95"], color=look["color"], linewidth=0.8)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
@@ -161,7 +167,7 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None
 
 
 def _choose_style(look: dict, points: int) -> dict:
-    """The style of a line through the given number of points of a table: few are marked."""
+    """Choose the style of a line of a table: the more points, the fewer marks."""
     if points > _MOST_JOINED:
         return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
     return look if points <= _FEW else look | {"marker": ""}

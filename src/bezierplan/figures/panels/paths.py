@@ -1,7 +1,6 @@
-"""A path with its control points: that of a picked run, in its workspace next to the exact shortest
-path, or a given one.
-
-Or several paths in one workspace, a picked run for each value of a column.
+"""A path with its control points, either of a chosen run, in its workspace next to the exact
+shortest path, or a given one. Or several paths in one workspace, a run chosen for each value of a
+column.
 """
 
 from __future__ import annotations
@@ -80,12 +79,13 @@ _CHANGED = {
 
 
 def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
-    """The run that a panel shows, or None if there is none to pick, and its description in the
-    columns of the panel's csv file.
+    """Choose the run that a panel shows, and describe it in the columns of the panel's csv file.
 
-    Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run),
-    curve, length (in units), feasible. Raises ValueError unless all the panel's runs are of one
-    problem and one method.
+    Returns None in place of a run if there is none to choose. Columns: problem, method, runs and
+    feasible_runs (counts), run (its id; empty if there is none), curve, length (in units),
+    feasible.
+
+    Raises ValueError unless all the panel's runs are of one problem and one method.
     """
     from bezierplan.analysis.results import pick as pick_run
 
@@ -105,8 +105,9 @@ def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str
 
 
 def describe_run(frame: pd.DataFrame, *more: str) -> str:
-    """Which run a panel shows, from the columns that `choose_run` names, and more lines about it;
-    or just that there is none.
+    """Say which run a panel shows, or that there is none.
+
+    frame: with the columns of `choose_run`. more: other clauses about the run.
     """
     import pandas as pd
 
@@ -117,13 +118,13 @@ def describe_run(frame: pd.DataFrame, *more: str) -> str:
 
 
 def describe_feasible_runs(frame: pd.DataFrame) -> str:
-    """How many of a panel's runs are feasible, from the columns that `choose_run` names."""
+    """Say how many of a panel's runs are feasible, from the columns of `choose_run`."""
     row = frame.iloc[0]
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
 
 class Explicit(Model):
-    """A path without a run."""
+    """A path given by its points, not by a run."""
 
     curve: Literal[tuple(curves.CURVES)] = Field(description="the kind of a curve")
     points: list[Annotated[list[Number], of_length(2, "[x, y]")]] = Field(
@@ -132,8 +133,9 @@ class Explicit(Model):
 
 
 class Options(RunsPanel):
-    """Keys of a panel: of picked runs, or of an explicit path. With hue, `one` is meant for each of
-    its values.
+    """Keys of a panel of chosen runs or of an explicit path.
+
+    With hue, `one` is meant for each of its values.
     """
 
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
@@ -171,7 +173,7 @@ class Options(RunsPanel):
     )
 
     def source(self, sources: Sources) -> Results | None:
-        """Runs, of one layout if one is picked; nothing for an explicit path."""
+        """Return the runs, of one layout if one is chosen, or None for an explicit path."""
         from bezierplan.analysis.results import select
 
         if self.experiment is None:
@@ -185,6 +187,7 @@ class Options(RunsPanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
+        """Refuse a panel that is of a run and of an explicit path, or of neither."""
         require_one(self, "pick", "explicit")
         require_one(self, "experiment", "explicit")
         if "measure" in self.model_fields_set and self.hue is None:
@@ -193,17 +196,17 @@ class Options(RunsPanel):
 
 
 def data(results: Results | None, options: Options) -> pd.DataFrame:
-    """What is drawn of a path: one row per point, in the order in which points are joined.
+    """Return one row per point of a path, in the order in which points are joined.
 
-    Columns: those of `choose_run`, for a run; part (start, target, bound: the exact shortest path,
-    hull, control or points, path, collision: a path's first one, if any, and appeared and vanished:
-    centres of changed cells), x, y (in the workspace's unit). Without a run to show, only what
-    belongs to the problem. Only curves within their hull have one, and polylines and curves with
-    tangents no control points.
+    Rows of a run have the columns of `choose_run`. All have part (start, target, bound: the exact
+    shortest path, hull, control or points, path, collision: a path's first one, if any, and
+    appeared and vanished: centres of changed cells), x, y (in the workspace's unit). If there is no
+    run to show, only the problem's own rows. Only curves within their hull have one, and polylines
+    and curves with tangents no control points.
 
     With `hue`, paths are drawn without control points, and the column `measure` has each run's
     value of that metric. With `printed`, the column of this name has the shortest length of that
-    published table for the runs. Whatever the `view`, the rows include everything.
+    published table for the runs. The rows include everything, also beyond the `view`.
 
     Raises ValueError unless all runs, of one value of hue, are of one problem and one method, and
     if a curve cannot have such points.
@@ -253,7 +256,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
 
 
 def _list_parts(path: Path, control: str) -> dict[str, np.ndarray]:
-    """Points (n, 2) of a path by the part that they form."""
+    """Return the points (n, 2) of a path by the part that they form."""
     import shapely
 
     places = {}
@@ -265,7 +268,7 @@ def _list_parts(path: Path, control: str) -> dict[str, np.ndarray]:
 
 
 def sample_path(path: Path) -> np.ndarray:
-    """Points (n, 2) along a path, close enough to look smooth."""
+    """Return points (n, 2) along a path, close enough to look smooth."""
     pieces = len(curves.bezier_pieces(path))
     steps = pieces * max(1, _STEPS // pieces)
     return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
@@ -296,7 +299,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
-    """Mark cells that differ from those of another problem."""
+    """Draw the cells that differ from those of another problem."""
     for part, look in _CHANGED.items():
         cells = frame[frame["part"] == part]
         if len(cells):
@@ -305,8 +308,9 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the paths of all values of hue, each in its own style, and what belongs to their problem
-    once; returns their measures.
+    """Draw the paths of all values of hue, each in its own style, and their problem once.
+
+    Returns a note with their measures.
     """
     groups = style.list_groups(frame, options.hue, options.where, scene)
     clauses = []
@@ -328,7 +332,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
 
 
 def _write_note(frame: pd.DataFrame, unit: str) -> Note:
-    """The length of the path; for the notes its run, and what else there is to say of it."""
+    """Return the length of the path as a heading, and clauses on its run for the caption."""
     row, parts = frame.iloc[0], set(frame["part"])
     if "path" not in parts:
         return Note("no path", describe_run(frame, "no path"))

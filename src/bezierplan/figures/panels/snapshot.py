@@ -1,5 +1,5 @@
-"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far,
-the current plan, dropped plans.
+"""One moment of a drive in a world that moves: obstacles and their velocity, the way so far, the
+current plan and dropped plans.
 """
 
 from __future__ import annotations
@@ -62,11 +62,13 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, method, run (its id), time (of the
-    moment, in steps), part, number, x, y, size, x_velocity, y_velocity (units per step).
+    """Return one row per place at the moment of a drive, which runs again.
 
-    Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force);
-    dropped (earlier plans, by number); collision (places of first collisions up to the moment).
+    Columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y,
+    size, x_velocity, y_velocity (units per step). Parts are all of `workspace.data`, and start,
+    target; way (driven so far); robot; plan (in force); dropped (earlier plans, by number);
+    collision (places of first collisions up to the moment).
+
     Raises ValueError for runs of several problems or methods, and if no run is found.
     """
     from bezierplan.analysis.results import pick as picked
@@ -91,7 +93,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 def build_moment(
     world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float
 ) -> pd.DataFrame:
-    """Rows of a moment, a share of the time of a drive."""
+    """Return the rows of a moment. at: the moment, as a share of the time of the drive."""
     import pandas as pd
 
     from bezierplan.running.simulation.motion_check import cut_motion
@@ -128,6 +130,7 @@ def build_moment(
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the moment, with an arrow at each circle that moves."""
     workspaces.draw_shapes(axes, frame)
     workspaces.label_axes(axes, options.find_workspace(frame, scene).unit)
     circles = frame[frame["part"] == "circle"]

@@ -1,8 +1,9 @@
-"""What a method adds to the baseline: excess length against the tightest bend, in which the exact
-shortest path with rounded corners is a line over all turning radii, or against CPU time.
+"""The excess length of methods against their tightest bend, in which the exact shortest path with
+rounded corners is a line over all turning radii, or against CPU time: it shows if a method adds
+anything to this baseline.
 
 A panel is of one problem, or of a family of drawn ones: then a point is the median of the problems'
-medians, and of the line at each radius. A path with corners bends without limit: it enters no
+medians, and so is the line at each radius. A path with corners bends without limit: it enters no
 median, but is counted; only where all have corners the median is of their excess.
 """
 
@@ -66,14 +67,15 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row a method, and one a radius of the line.
+    """Return one row a method, and one a radius of the line.
 
-    Columns: part (method or line); of methods: method, runs and feasible_runs (counts), free (share
-    of paths that the certified checker accepts), cornered (free paths with corners), problems, and
-    against bend adds, in how many problems no point of the line is as short and as smooth as the
-    method: as the lower ends of its intervals or, in a family, as its medians; none for the
-    baseline; of the line: radius, in units; x, y (medians) and x_low, x_high, y_low, y_high (their
-    95 % bootstrap intervals, those of a single number at it).
+    Columns: part (method or line). Methods have method, runs and feasible_runs (counts), free
+    (share of paths that the certified checker accepts), cornered (free paths with corners),
+    problems, and against bend adds: the number of problems in which no point of the line is as
+    short and as smooth as the method. There the method counts with the lower ends of its intervals
+    or, in a family, with its medians; the baseline has no such number. The line has radius, in
+    units. Both have x, y (medians) and x_low, x_high, y_low, y_high (their 95 % bootstrap
+    intervals, those of a single number at it).
     """
     import pandas as pd
 
@@ -120,8 +122,10 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def adds(line: np.ndarray, bend: float, excess: float, often: float) -> bool:
-    """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
-    smooth and as short, and its paths are often free and without corners, the share given.
+    """Return True if a method adds something to the line.
+
+    No point (bend, excess) of the line (n, 2) is then as smooth and as short, and its paths are
+    often free and without corners. often: the share of such paths.
     """
     as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
     return bool(often >= _OFTEN_FREE and not as_good.any())
@@ -143,8 +147,11 @@ def _measure_bends(runs: pd.DataFrame) -> np.ndarray:
 
 
 def _compute_lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
-    """Return the rounded shortest paths: problem, radius that is asked, x (bend) and y (excess);
-    from a sharp path to the roundest, at the same radii in all problems.
+    """Compute the rounded shortest paths, from a sharp one to the roundest, at the same radii in
+    all problems.
+
+    Columns: problem, radius that is asked, x (bend) and y (excess). wanted: if False, there are no
+    rows.
     """
     import pandas as pd
 
@@ -163,7 +170,9 @@ def _compute_lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool
 
 
 def _round_shortest_path(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
-    """Return tightest bend and excess of the shortest path rounded by a radius, NaN without one."""
+    """Return tightest bend and excess of the shortest path rounded by a radius, NaN if there is
+    none.
+    """
     from bezierplan.geometry.tightest_turn import largest_curvature
     from bezierplan.planners import rounded_shortest_path
 
@@ -178,8 +187,9 @@ def _round_shortest_path(problem: Problem, bound: float, radius: float) -> tuple
 
 
 def _compute_medians(points: np.ndarray, name: str) -> dict[str, float]:
-    """Return medians of points (n, 2) with their intervals, without those that bend without limit
-    unless all do.
+    """Return medians of points (n, 2) with their intervals.
+
+    Points that bend without limit are left out unless all do.
     """
     bounded = points[np.isfinite(points[:, 0])]
     middle_of = {}
@@ -194,6 +204,7 @@ def _compute_medians(points: np.ndarray, name: str) -> dict[str, float]:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the line and a mark with intervals for each method."""
     of_bend = options.x == "bend"
     placed, sides, edges = _place_at_edges(frame)
     groups = style.list_groups(placed[placed["part"] == "method"], "method", options.where, scene)
@@ -240,8 +251,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _place_at_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
-    """Return the table with straight paths, and those that bend like corners, at the edges of a
-    logarithmic axis; the ends of the axis; and the names of edges at which something stands.
+    """Move straight paths, and those that bend like corners, to the edges of a logarithmic axis.
+
+    Returns the table; the ends of the axis; and the names of edges at which something stands.
     """
     numbers = frame[["x", "x_low", "x_high"]].where(frame["y"].notna())
     inside = numbers.to_numpy()[np.isfinite(numbers) & (numbers > 0)]
@@ -266,7 +278,7 @@ def _describe_paths(row: pd.Series) -> str:
 
 
 def _write_note(table: pd.DataFrame, scene: Any) -> Note:
-    """Say what the panel shows, and which methods add something."""
+    """Say how to read the marks, and which methods add something."""
     several = bool(table["problems"].max() > 1)
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside a mark the share of paths that are free, where not all are")
@@ -283,5 +295,6 @@ def _write_note(table: pd.DataFrame, scene: Any) -> Note:
 def _list_methods(
     methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")
 ) -> str:
+    """Return printed names of methods, each with more words behind it."""
     printed = (naming.printed(method, "method", scene.labels) for method in methods)
     return ", ".join(name + beside for name, beside in zip(printed, more))

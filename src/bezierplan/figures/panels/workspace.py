@@ -1,4 +1,4 @@
-"""A workspace: cells with their numbers, circles or polygons, without any path."""
+"""A workspace: cells with their numbers, circles or polygons, and no path."""
 
 from __future__ import annotations
 
@@ -85,20 +85,18 @@ class Options(Panel):
     )
 
     def source(self, sources: Sources) -> Workspace:
-        """The workspace."""
+        """Return the workspace that the panel names."""
         return sources.workspaces[self.workspace]
 
 
 def data(workspace: Workspace, options: Options) -> pd.DataFrame:
-    """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or
-    point of a ring.
+    """Return one row per corner of a workspace's bounds, cell, circle, or point of a ring, in its
+    unit.
 
-    Large grids list no free cells unless they show numbers.
-
-    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's
-    centre), size (a cell's side, a circle's radius), obstacle and ring (polygons only), number (of
-    the cells that show it; see `workspaces.grid`), height (of the cells of a grid with heights, in
-    its unit).
+    Large grids list no free cells unless they show numbers. Columns: part (corner, free, occupied,
+    surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
+    radius), obstacle and ring (polygons only), number (of the cells that show it; see
+    `workspaces.grid`), height (of the cells of a grid with heights, in its unit).
 
     Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
@@ -115,7 +113,7 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
 
 
 def list_parts(workspace: Workspace) -> pd.DataFrame:
-    """What is drawn of a workspace itself, without numbers: rows as in `data`."""
+    """Return the rows of a workspace itself, as `data` does, but no numbers."""
     shapes, drawn = workspace, []
     if isinstance(workspace, Grid):
         shapes = workspace.shapes
@@ -127,12 +125,12 @@ def list_parts(workspace: Workspace) -> pd.DataFrame:
 
 
 def list_ends(problem: Problem) -> pd.DataFrame:
-    """Start and target of a problem, as `list_points` gives them."""
+    """Return start and target of a problem as `list_points` gives them."""
     return list_points({"start": [problem.start], "target": [problem.target]})
 
 
 def list_points(points: Mapping[str, Any]) -> pd.DataFrame:
-    """Points (n, 2) by part as rows: part, x and y."""
+    """Return points (n, 2) by part as rows with part, x and y."""
     import pandas as pd
 
     tables = [
@@ -143,6 +141,7 @@ def list_points(points: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
+    """Return the rows of circles, or of the rings of polygons."""
     import pandas as pd
 
     if isinstance(workspace, Circles):
@@ -159,8 +158,9 @@ def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
 
 
 def _build_table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
-    """The corners of the bounds and everything drawn within them, with all columns; heights only if
-    there are any.
+    """Join the corners of the bounds and all that is drawn within them, with all columns.
+
+    Heights are a column only if there are any.
     """
     import pandas as pd
 
@@ -170,7 +170,7 @@ def _build_table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
 
 
 def _list_cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
-    """Cells of a grid; those beyond its own part are surplus."""
+    """Return the cells of a grid, in which surplus ones lie beyond the map's own part."""
     import pandas as pd
 
     rows, columns = whole.occupied.shape
@@ -190,8 +190,8 @@ def _list_cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`.
 
-    Cells that show their numbers need no scale: it would take up the room that keeps the numbers
-    legible.
+    Cells that show their numbers get no scale, because it would take up the room that keeps the
+    numbers legible.
     """
     unit = scene.workspaces[options.workspace].unit
     draw_shapes(axes, frame)
@@ -209,7 +209,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def draw_workspace(axes: Axes, home: Workspace, **more: bool) -> None:
-    """Draw the workspace of what a panel shows, with its scale; more: as for `draw_shapes`."""
+    """Draw the workspace behind a panel, with its scale; more: see `draw_shapes`."""
     from matplotlib.colors import ListedColormap
 
     flat = isinstance(home, Grid) and not home.shapes and home.heights is None
@@ -248,9 +248,10 @@ def draw_letters(axes: Axes, frame: pd.DataFrame, letters: list[str] | None) -> 
 
 
 def draw_shapes(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
-    """Draw the rows of `data` or `list_parts` to scale, without numbers or axis labels; only the
-    outlines of circles and polygons if something else fills the panel, such as the cells of a grid
-    drawn from them.
+    """Draw the rows of `data` or `list_parts` to scale, without numbers or axis labels.
+
+    outlines: draw only outlines of circles and polygons, because other things fill the panel, such
+    as the cells of a grid drawn from them.
     """
     from matplotlib.collections import PatchCollection
 
@@ -284,8 +285,9 @@ def draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
-    """Shade free cells by their height; the legend names every height, or of many the lowest and
-    the highest.
+    """Draw free cells shaded by their height.
+
+    The legend names every height, or only the lowest and the highest if there are many.
     """
     low, high = cells["height"].min(), cells["height"].max()
     named = (low, high) if cells["height"].nunique() > _MOST_HEIGHTS else cells["height"].unique()
@@ -299,7 +301,7 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
 
 
 def _build_patches(frame: pd.DataFrame) -> list[Patch]:
-    """Circles, then polygons."""
+    """Return patches of matplotlib for circles, then for polygons."""
     import shapely
     from matplotlib.patches import Circle
     from shapely.plotting import patch_from_polygon
