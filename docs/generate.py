@@ -127,8 +127,8 @@ def escape_cell(value: Any) -> str:
 def describe_setting(value: Any) -> str:
     """Return the value of a setting in words.
 
-    >>> in_words({"smooth": "piecewise_quadratic"}), in_words(True), in_words(0.5)
-    ('piecewise quadratic (smooth)', 'yes', '0.5')
+    >>> describe_setting({"smooth": "piecewise_quadratic"}), describe_setting(True)
+    ('piecewise quadratic (smooth)', 'yes')
     """
     if isinstance(value, dict):
         return ", ".join(f"{describe_setting(each)} ({name})" for name, each in value.items())

@@ -240,7 +240,7 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[
 def format_name(key: str) -> str:
     """Return the name of a study for use in a sentence.
 
-    >>> name_of("song2016"), name_of("meledje")
+    >>> format_name("song2016"), format_name("meledje")
     ('Song 2016', 'Meledje')
     """
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()

@@ -37,7 +37,7 @@ class Caption(NamedTuple):
 def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
     """Return a verdict in words with the number of runs behind it.
 
-    >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
+    >>> describe_verdict("contradicted", 4000), describe_verdict("undecided", 10, "these ")
     ('contradicted by 4,000 runs', 'not decided by these 10 runs')
     """
     words = {0: "our calculation", 1: "this run" if which else "1 run"}
@@ -47,7 +47,7 @@ def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
 def describe_verdicts(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
     """Return the verdict of many runs, preceded by that of the runs shown if the two differ.
 
-    >>> tell_both("contradicted", 4000, "undecided", 10)
+    >>> describe_verdicts("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'
     """
     many = describe_verdict(verdict, runs)

@@ -54,7 +54,7 @@ def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[
     table: all text, as in its csv file. label: for `\\ref`. notes: sentences below the table.
 
     >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
-    >>> print(document(lengths, "Lengths in %", "tab:x"))
+    >>> print(format_table(lengths, "Lengths in %", "tab:x"))
     % Needs \\usepackage{booktabs,graphicx}.
     \\begin{table}[htbp]
       \\centering

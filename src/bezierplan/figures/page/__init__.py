@@ -39,7 +39,7 @@ def sort_as_printed(names: Iterable[str]) -> list[str]:
 
     Numbered ones are sorted by number; the others keep their order.
 
-    >>> in_printed_order(["work", "figure11", "figure2", "table6", "table4"])
+    >>> sort_as_printed(["work", "figure11", "figure2", "table6", "table4"])
     ['table4', 'table6', 'figure2', 'figure11', 'work']
     """
     numbered = {

@@ -25,7 +25,7 @@ def build_cell_addresses(
     these columns. primary: key -> value under the default reading.
 
     >>> mean = {"method": "x", "metric": "length", "statistic": "mean"}
-    >>> of_cells("one/table1", [{"map": "a"} | mean, {"map": "b"} | mean], {"map": "a"})
+    >>> build_cell_addresses("one/table1", [{"map": "a"} | mean, {"map": "b"} | mean], {"map": "a"})
     ['one/table1/length/mean', 'one/table1/b/length/mean']
     """
     single = {

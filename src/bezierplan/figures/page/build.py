@@ -205,7 +205,7 @@ def format_value(value: Any, digits: int = 4) -> str:
 def label_keys(text: Any, labels: dict[str, str]) -> str:
     """Return text with the keys of methods and metrics replaced by their printed names.
 
-    >>> labelled("the method mga_c of a_study", {"mga_c": "MGA-C"})
+    >>> label_keys("the method mga_c of a_study", {"mga_c": "MGA-C"})
     'the method MGA-C of a_study'
     """
     return re.sub(r"\w+_\w+", lambda found: labels.get(found[0], found[0]), str(text))
