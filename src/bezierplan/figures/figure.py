@@ -23,6 +23,7 @@ _PARTS = TypeAdapter(
 
 def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
     """Return the keys of a part and of all parts; a part's value wins, and mappings are merged."""
+    # Mappings such as `where` may be given for a part and for all.
     both = {
         key: _merge_keys(part[key], common[key])
         for key in part.keys() & common.keys()
@@ -57,6 +58,7 @@ def _read_panels(entries: Any) -> list[Panel]:
     placed: dict[str, Any] = {}
     for number, entry in enumerate(entries):
         placed |= _expand_entry(number, entry)
+    # By place, so that a fault is told with the keys that lead to it.
     panels = _PANELS.validate_python(placed)
     for place, panel in panels.items():
         panel._place = place

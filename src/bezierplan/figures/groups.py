@@ -41,6 +41,7 @@ def collect_rows(
     """
     import pandas as pd
 
+    # Chunks are read in any order, and the last bits of a sum depend on it.
     runs = results.runs.sort_values("id")
     return pd.DataFrame(
         find_constants(runs) | dict(zip(keys, key)) | count_runs(own) | row
@@ -115,6 +116,7 @@ def find_published(
     numbers, runs = results.published, results.runs
     if numbers is None or table is None:
         return []
+    # Keys of settings that print leaves empty hold for all runs.
     numbers = numbers.query("table == @table and metric == @metric and statistic == @statistic")
     for column in numbers.columns.difference(_PRINTED):
         own = runs[column].unique() if column in runs else []

@@ -122,6 +122,7 @@ class FigureFiles(Job):
         checks = [by_reading.read_checks(file) for file in input_files.alternatives]
         under = [*zip(self.alternatives, checks, strict=True)]
         sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
+        # Read back, so that pictures show exactly the content of the file.
         sheet.write_data(sheet.collect_data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width

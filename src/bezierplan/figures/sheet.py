@@ -208,6 +208,7 @@ def _fit_height(figure: Figure) -> None:
         empty = figure.bbox.height - max(box.y1 for box in boxes) + min(box.y0 for box in boxes)
         figure.set_figheight(figure.get_figheight() - (empty - floor) / figure.dpi + 0.1)
     figure.draw_without_rendering()
+    # Laid out once: each of the three files would do it again.
     figure.set_layout_engine(None)
 
 
@@ -240,6 +241,7 @@ def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = Non
     Equal drawings give equal bytes at any time. Each picture has its caption in its metadata.
     """
     caption = figure.get_label() or None
+    # A date or a version would make equal drawings differ in their bytes.
     kinds = {
         "svg": (svg, {"Date": None, "Creator": None, "Description": caption}),
         "png": (png, {"Software": None} | ({"Description": caption} if caption else {})),

@@ -251,6 +251,7 @@ def scale_axis(axis: Any, scale: str = "linear", unit: str = "") -> None:
         middle = (low + high) / 2
         getattr(axis.axes, f"set_{name}lim")(middle - least / 2, middle + least / 2)
     if scale == "log":
+        # Only few decades leave room for ticks within them.
         decades = np.log10(high / low)
         axis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)))
         axis.set_minor_formatter(NullFormatter())

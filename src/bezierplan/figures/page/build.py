@@ -103,6 +103,7 @@ def _read_check(file: Path) -> dict[str, Any]:
 
 def _merge_workspaces(data: dict[str, dict]) -> None:
     """Remove workspaces that equal an earlier one, and let their problems name that one."""
+    # Experiments on the same map would each bring its shapes.
     first: dict[str, str] = {}
     names = {
         name: first.setdefault(json.dumps(shapes), name)
@@ -185,6 +186,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
 def pack(value: Any) -> str:
     """Return text, or another value as JSON, compressed for the page's script to unpack."""
     if not isinstance(value, str):
+        # JSON has no NaN: the script could not read it.
         value = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return base64.b64encode(zlib.compress(value.encode(), 9)).decode()
 
@@ -234,6 +236,7 @@ def describe_positions(cells: Iterable[reader.Row]) -> str:
         wide += f"{len(placed) - len(told)}"
         text = f"{text}; {wide}" if told else wide[0].upper() + wide[1:]
     reasons = {cell["reason"] for cell in placed}
+    # Different reasons stand beside their numbers.
     if len(reasons) == 1 and (reason := reasons.pop()):
         text += f". This proves nothing: {reason}"
     return text

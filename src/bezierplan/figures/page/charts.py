@@ -26,6 +26,7 @@ def add_bars(cells: list[Row]) -> None:
         low, high = min(reach), max(reach)
         width = high - low or 1.0
         for cell, (ours, printed), (left, right) in zip(column, marks, ends, strict=True):
+            # From 4 to 96, because marks at the ends need room.
             cell["bar"] = {
                 name: round(4 + 92 * (value - low) / width, 1)
                 for name, value in (

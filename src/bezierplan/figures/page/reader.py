@@ -24,12 +24,14 @@ Row = dict[str, Any]
 
 def read(file: str | Path) -> pd.DataFrame:
     """Read a csv file, in which only an empty cell is a missing value."""
+    # Digits are a part of a printed number, such as the last zero of 1.50.
     texts = {"as_printed": str}
     return pd.read_csv(file, dtype=texts, keep_default_na=False, na_values=[""], low_memory=False)
 
 
 def list_rows(table: pd.DataFrame) -> list[Row]:
     """Return the rows of a table, with None for a missing or infinite value."""
+    # Only columns of objects can hold None.
     table = table.replace([np.inf, -np.inf], np.nan).astype(object)
     return table.where(table.notna(), None).to_dict("records")
 
@@ -235,6 +237,7 @@ def _list_numbers(
     for cell, position, name in zip(
         cells, positions, build_cell_addresses(table, positions, spec.primary), strict=True
     ):
+        # The evidence has the same columns, of many runs.
         if row := by_place.get(build_address(*position.values())):
             cell |= {name: value for name, value in row.items() if name in cell}
         cell |= {

@@ -70,6 +70,7 @@ def choose_runs(
             for method in content.methods
             if method in by_method
         ]
+    # Histories and points are taken from the tables for these runs alone.
     ids = {
         name
         for each in choice
@@ -246,6 +247,7 @@ def _describe_run(row: Row, bounds: Bounds, problem: str) -> Row:
         "path": []
         if path is None
         else _round_points(_reduce_points(sample_path(path), _FLAT * size), size),
+        # Points of this curve are tangents too, and bend it otherwise.
         "control": []
         if path is None or path.curve == "ferguson"
         else _round_points(path.points, size),

@@ -103,6 +103,7 @@ class Sources:
         The function gets the workspace and the published tables that the panel names, and its
         arguments.
         """
+        # As text, because arguments may be lists, which cannot be keys.
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
             first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]

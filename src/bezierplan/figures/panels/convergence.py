@@ -148,6 +148,7 @@ def _build_rows_of_group(
     theirs = find_published(group, "objective", options.printed)
     ends = np.nan, np.nan
     for number, column in enumerate(histories.T):
+        # Equal objectives have equal intervals: they are not resampled.
         if number == 0 or not np.array_equal(column, histories[:, number - 1]):
             ends = statistics.interval(statistic, column, generator(name))
         last = theirs and number == generations - 1
@@ -212,6 +213,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             axes.fill_between(generation, rows["low95"], rows["high95"], zorder=1.5, **band)
         elif len(groups) <= _MOST_ENDS:
             last = rows.iloc[-1]
+            # Side by side, so that all can be seen.
             at = last["generation"] * (1 - 0.015 * (len(groups) - number))
             bar = {"color": look["color"], "linewidth": 1.1, "zorder": 3.5}
             axes.vlines(at, last["low95"], last["high95"], **bar)

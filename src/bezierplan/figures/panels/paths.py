@@ -221,6 +221,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         ends = {"start": [start], "target": [target]}
         return workspaces.list_points(ends | _list_parts(path, options.control))
     if options.hue is not None:
+        # Each value is a panel of one run.
         alone = options.but(hue=None, control="none")
         groups = results.runs.groupby(options.hue)
         frames = [

@@ -124,6 +124,7 @@ def build_moment(
         hit = cut_motion(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         places.append(("collision", hit))
     for number, (part, points) in enumerate(places):
+        # Way and robot stand before the plans, which are numbered from 0.
         own = workspaces.list_points({part: points})
         parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
     return pd.concat([*parts, workspaces.list_ends(problem)], ignore_index=True)

@@ -160,6 +160,7 @@ def _compute_lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool
 
     names = list(problems) if wanted else []
     rows = [build_point(name, math.inf) for name in names]
+    # The roundest path of a problem tells which radii fit.
     widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
     low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high or low)) + 1)

@@ -174,6 +174,7 @@ def _list_cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     import pandas as pd
 
     rows, columns = whole.occupied.shape
+    # Large grids are drawn by their occupied cells alone.
     hidden = numbers == "none" and whole.heights is None and rows * columns > _MOST_OUTLINES
     row, column = np.nonzero(whole.occupied | (not hidden))
     surplus = (row >= grid.occupied.shape[0]) | (column >= grid.occupied.shape[1])
