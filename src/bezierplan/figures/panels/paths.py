@@ -1,6 +1,7 @@
 """A path with its control points, either of a chosen run, in its workspace next to the exact
-shortest path, or a given one. Or several paths in one workspace, a run chosen for each value of a
-column.
+shortest path, or a given one.
+
+Or several paths in one workspace, a run chosen for each value of a column.
 """
 
 from __future__ import annotations
