@@ -50,7 +50,7 @@ html_theme_options = {
 html_context = {
     "default_mode": "auto",
     "made_by": build.describe_version(),
-    "licence": content.citations()[0]["license"],
+    "licence": content.list_citations()[0]["license"],
 }
 templates_path = ["templates"]
 # Pages without pages below them.

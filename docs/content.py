@@ -1,5 +1,5 @@
-"""What the site shows: tables and figures of a scale, which mirror the papers', and
-as evidence the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
+"""The content of the site: tables and figures of a scale, which mirror the papers', and as evidence
+the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
 """
 
 import base64
@@ -33,46 +33,47 @@ PICTURES = {
 """The figure of each paper that shows what it is about; of another study, its first."""
 
 
-def results() -> tuple[str, Path]:
-    """The scale with the most runs that there is, and the folder of its results. Raises Fault."""
+def find_results() -> tuple[str, Path]:
+    """Find the scale with the most runs that there is, and its folder of results. Raises Fault."""
     for scale in SCALES:
         if (ROOT / "results" / scale / "index.html").is_file():
             return scale, ROOT / "results" / scale
     raise Fault("no results to show: `snakemake smoke` or `make reproduce` makes them")
 
 
-def content() -> tuple[SimpleNamespace, Path]:
-    """Return what `build.page` gives for the results that there are, and their folder. Each study
-    also gets its name, as people search for it; definition; data, of the viewer; picture, one of
-    its figures. Raises Fault.
+def read_content() -> tuple[SimpleNamespace, Path]:
+    """Read the content of the page of results, and return it with the folder of its results.
+
+    Each study also gets its name, as people search for it; definition; data, of the viewer;
+    picture, one of its figures. Raises Fault.
     """
-    scale, folder = results()
+    scale, folder = find_results()
     with contextlib.chdir(ROOT):
         studies = read_studies()
         whole = page_jobs.build_page(studies, scale)
         study_code.load_functions(whole.code)  # what a study's metrics mean
-        page = build.page(
+        page = build.gather_content(
             whole.page._replace(outcome=[*studies]),
             folder,
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
         )
-    page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
+    page.data = unpack_data((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
-        study.name, study.definition, study.data = outcome.name_of(key), studies[key], page.data
+        study.name, study.definition, study.data = outcome.format_name(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         of_name = {figure["name"]: figure for figure in study.figures}
         study.picture = of_name.get(PICTURES.get(key), study.figures[0])
     return page, folder
 
 
-def about(key: str) -> str:
-    """What a paper is, or a planner does, in prose."""
+def read_prose(key: str) -> str:
+    """Read the text on a paper or planner that is written by hand."""
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
 
 
-def data_of(page: str) -> dict[str, Any]:
-    """The runs, problems and workspaces that a page of results holds for its viewer."""
+def unpack_data(page: str) -> dict[str, Any]:
+    """Return the runs, problems and workspaces that a page of results holds for its viewer."""
     packed = re.search(r'id="page-data">([^<]*)', page)[1]
     return json.loads(zlib.decompress(base64.b64decode(packed)))
 
@@ -81,9 +82,11 @@ def data_of(page: str) -> dict[str, Any]:
 # Citations
 
 
-def citations() -> list[dict[str, Any]]:
-    """This software, then the papers, as CITATION.cff lists them. Added: key; names, of the
-    authors; where, journal, version and year; doi, maybe none; bibtex.
+def list_citations() -> list[dict[str, Any]]:
+    """List this software, then the papers, as CITATION.cff has them.
+
+    Added keys: key; names, of the authors; where, journal, version and year; doi, maybe none;
+    bibtex.
     """
     content = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     year = content["date-released"].year
@@ -93,28 +96,28 @@ def citations() -> list[dict[str, Any]]:
         | entry
         | {
             "key": entry["notes"],
-            "names": names(entry, ", "),
+            "names": format_authors(entry, ", "),
             "where": "".join(
                 f", {entry[name]}" for name in ("journal", "version", "year") if name in entry
             ),
-            "bibtex": bibtex(entry),
+            "bibtex": format_bibtex(entry),
         }
         for entry in (first, *content["references"])
     ]
 
 
-def names(entry: dict[str, Any], between: str) -> str:
-    """The authors of an entry of CITATION.cff."""
+def format_authors(entry: dict[str, Any], between: str) -> str:
+    """Return the names of the authors of an entry of CITATION.cff, with a text between them."""
     return between.join(
         each.get("name") or f"{each['given-names']} {each['family-names']}"
         for each in entry["authors"]
     )
 
 
-def bibtex(entry: dict[str, Any]) -> str:
-    """An entry of CITATION.cff for BibTeX."""
+def format_bibtex(entry: dict[str, Any]) -> str:
+    """Return an entry of CITATION.cff for BibTeX."""
     kind = {"article": "article" if "journal" in entry else "unpublished"}
-    authors = names(entry, " and ")
+    authors = format_authors(entry, " and ")
     fields = {"author": f"{{{authors}}}" if entry["type"] == "software" else authors}
     fields |= {name: entry.get(name) for name in ("title", "journal", "year", "version", "doi")}
     fields["url"] = entry.get("repository-code")

@@ -1,8 +1,8 @@
-"""A Sphinx extension: before a build it writes the pages of the site that follow from code, studies
-and results, into files that git ignores.
+"""A Sphinx extension that writes pages of the site before a build, into files that git ignores.
+Their content follows from code, studies and results.
 
 A page is a template: `templates/method.md.jinja` for a planner, `templates/paper.md.jinja` for a
-paper, and every `*.in.md`. What is said of a planner or paper by hand stands in `prose`.
+paper, and every `*.in.md`. Texts on a planner or paper that are written by hand stand in `prose`.
 """
 
 from __future__ import annotations
@@ -35,28 +35,28 @@ RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json")
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Sphinx calls it once."""
+    """Register writer, copier and renderer of formulas; Sphinx calls this once."""
     app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
     app.connect("build-finished", lambda app, fault: fault or copy_results(Path(app.outdir)))
     # MathML, which browsers draw by themselves.
     inline, block = (
-        partial(formula, "{}"),
+        partial(write_formula, "{}"),
         '<div class="equation" tabindex="0" role="group">{}</div>',
     )
-    app.add_html_math_renderer("mathml", (inline, None), (partial(formula, block), None))
+    app.add_html_math_renderer("mathml", (inline, None), (partial(write_formula, block), None))
     return {"parallel_read_safe": True}
 
 
-def formula(around: str, writer: Any, node: Any) -> None:
-    """Write a formula, with html around it."""
+def write_formula(around: str, writer: Any, node: Any) -> None:
+    """Write a formula as MathML, with html around it."""
     text = latex2mathml.tex2mathml(node.astext(), as_block=around != "{}")
     writer.body.append(around.format(text))
     raise SkipNode
 
 
 def copy_results(site: Path) -> None:
-    """Put the page of results into the site, with the files that it links to."""
-    _, folder = content.results()
+    """Copy the page of results into the site, with the files that it links to."""
+    _, folder = content.find_results()
     shutil.rmtree(site / "results", ignore_errors=True)
     for depth in ("", "*/", "*/*/"):
         for file in (file for pattern in RESULTS for file in folder.glob(depth + pattern)):
@@ -67,31 +67,31 @@ def copy_results(site: Path) -> None:
 
 def write(folder: Path) -> None:
     """Write all generated pages below a folder."""
-    page, results = content.content()
-    environment = build.environment(page, results, HERE / "templates", HERE)
+    page, results = content.read_content()
+    environment = build.build_environment(page, results, HERE / "templates", HERE)
     environment.filters |= {
         "as_row": lambda found: [found[0].name, *found[1]],
-        "cell": escaped,
-        "words": in_words,
-        "name": outcome.name_of,
+        "cell": escape_cell,
+        "words": describe_setting,
+        "name": outcome.format_name,
     }
-    planners = {name: planner(name, page.studies) for name in list_planners()}
+    planners = {name: describe_planner(name, page.studies) for name in list_planners()}
     environment.globals |= {
         "page": page,
         "papers": page.studies,
         "planners": planners,
-        "references": {entry["key"]: entry for entry in content.citations()},
-        "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
+        "references": {entry["key"]: entry for entry in content.list_citations()},
+        "numbers": reader.list_rows(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
         "meaning": describe_values,
-        "methods_by_family": outcome.methods_by_family(
+        "methods_by_family": outcome.build_methods_table(
             pd.read_csv(content.OUTCOME / "methods.csv"),
             {key: study.job.labels for key, study in page.studies.items()},
         ),
-        "table": table,
-        "about": content.about,
-        "page_of": page_of,
-        "origin_of_maps": origin_of_maps,
+        "table": format_table,
+        "about": content.read_prose,
+        "page_of": read_page,
+        "origin_of_maps": read_origin_of_maps,
         # Files of results, and no links to methods within a page.
         "root": "../results/",
         "methods_shown": {},
@@ -112,52 +112,53 @@ def write(folder: Path) -> None:
             file.write_text(text, encoding="utf-8")
 
 
-def table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A table in Markdown."""
+def format_table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
+    """Return a table in Markdown from its heads and rows."""
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-    lines += ["| " + " | ".join(escaped(cell) for cell in row) + " |" for row in rows]
+    lines += ["| " + " | ".join(escape_cell(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
 
 
-def escaped(value: Any) -> str:
-    """A value as the text of a cell; a bar would end it."""
+def escape_cell(value: Any) -> str:
+    """Return a value as the text of a cell, in which a bar would end it."""
     return " ".join(str(value).replace("|", "\\|").split())
 
 
-def in_words(value: Any) -> str:
-    """The value of a setting.
+def describe_setting(value: Any) -> str:
+    """Return the value of a setting in words.
 
-    >>> in_words({"smooth": "piecewise_quadratic"}), in_words(True), in_words(0.5)
-    ('piecewise quadratic (smooth)', 'yes', '0.5')
+    >>> describe_setting({"smooth": "piecewise_quadratic"}), describe_setting(True)
+    ('piecewise quadratic (smooth)', 'yes')
     """
     if isinstance(value, dict):
-        return ", ".join(f"{in_words(each)} ({name})" for name, each in value.items())
+        return ", ".join(f"{describe_setting(each)} ({name})" for name, each in value.items())
     if isinstance(value, list | tuple):
-        return ", ".join(map(in_words, value))
+        return ", ".join(map(describe_setting, value))
     if isinstance(value, bool):
         return "yes" if value else "no"
     return "none" if value is None else str(value).replace("_", " ")
 
 
-def rows_of(study: SimpleNamespace, methods: set[str]) -> list[Any]:
-    """The rows of some methods in the table of a study's methods, the label first."""
+def select_rows(study: SimpleNamespace, methods: set[str]) -> list[Any]:
+    """Return the rows of some methods in the table of a study's methods, the label first."""
     if study.families is None:
         return []
     labels = {study.job.labels.get(name, name) for name in methods}
     return [row for row in study.families.itertuples() if row[0] in labels]
 
 
-def page_of(key: str) -> str:
-    """The page of a paper that the repository keeps, without its title; links lead to the site's
-    pages, or to files of results.
+def read_page(key: str) -> str:
+    """Read the page of a paper that the repository keeps, without its title.
+
+    Links lead to the site's pages, or to files of results.
     """
     text = (content.OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
     text = re.sub(r"\]\((?:claims|numbers)\.csv\)", "](../results/index.html#KEY){.external}", text)
     return re.sub(r"\[([^]]*)\]\(\.\./\.\./config[^)]*\)", r"\1", text).replace("#KEY", f"#{key}")
 
 
-def origin_of_maps(study: SimpleNamespace) -> str:
-    """The text on where the maps of a study come from, if it has one, as a part of a page."""
+def read_origin_of_maps(study: SimpleNamespace) -> str:
+    """Read the text on where the maps of a study come from, if it has one, as a part of a page."""
     file = study.definition.folder / "workspaces" / "README.md"
     text = file.read_text(encoding="utf-8") if file.is_file() else ""
     lowered = re.sub(r"^(#+) ", r"#\1 ", re.sub(r"^# .*\n", "", text), flags=re.M)
@@ -168,18 +169,18 @@ def origin_of_maps(study: SimpleNamespace) -> str:
 # Methods
 
 
-def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
-    """What the page of a planner shows.
+def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
+    """Return the content of the page of a planner.
 
     users: study -> its methods. algorithms: the studies whose plain Python it is. settings: rows.
     open, achieved, resting: entries of assumptions, rows of the table of methods, and claims, each
     with its study.
     """
-    module, text = load_planner(name), content.about(name)
+    module, text = load_planner(name), content.read_prose(name)
     accepted = read_settings(module)
-    users = {key: methods for key, study in studies.items() if (methods := users_in(study, name))}
+    users = {key: methods for key, study in studies.items() if (methods := list_users(study, name))}
 
-    def of_users(rows: Callable[[SimpleNamespace, set[str]], Iterable[Any]]) -> list[Any]:
+    def collect(rows: Callable[[SimpleNamespace, set[str]], Iterable[Any]]) -> list[Any]:
         found = ((studies[key], rows(studies[key], set(users[key]))) for key in users)
         return [(study, row) for study, some in found for row in some]
 
@@ -190,42 +191,43 @@ def planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
         details=inspect.cleandoc(module.__doc__).replace("<", "&lt;"),
         maps=getattr(module, "workspaces", None),
         users=users,
-        algorithms=[key for key in users if algorithm_of(key) in users[key]],
-        runs=sorted(of_users(typical_runs), key=not_proposed),
+        algorithms=[key for key in users if find_algorithm(key) in users[key]],
+        runs=sorted(collect(list_typical_runs), key=is_not_proposed),
         settings=[
             [
                 f"`{setting}`",
                 f"{declared.meaning} ({declared})",
-                "; ".join(value_in(studies[key], users[key], setting) for key in users),
+                "; ".join(describe_value(studies[key], users[key], setting) for key in users),
             ]
             for setting, declared in accepted.items()
         ],
-        open=of_users(
+        open=collect(
             lambda study, methods: [
                 row
                 for row in study.assumptions
                 if row["setting"] in accepted and methods & set(row["methods"] or methods)
             ]
         ),
-        achieved=of_users(lambda study, methods: rows_of(study, methods)),
-        resting=of_users(resting),
+        achieved=collect(lambda study, methods: select_rows(study, methods)),
+        resting=collect(select_claims),
     )
 
 
-def users_in(study: SimpleNamespace, planner: str) -> list[str]:
-    """The methods of a study that use a planner."""
+def list_users(study: SimpleNamespace, planner: str) -> list[str]:
+    """List the methods of a study that use a planner."""
     return [name for name in study.definition.methods if study.definition.planner(name) == planner]
 
 
-def algorithm_of(key: str) -> str:
-    """The method of a study whose plain Python `algorithms` has."""
+def find_algorithm(key: str) -> str:
+    """Find the method of a study whose plain Python `algorithms` has."""
     text = (HERE / "algorithms" / f"{key}.py").read_text(encoding="utf-8")
     return re.search(rf'^METHOD = "{key}/(\w+)"$', text, re.M)[1]
 
 
-def typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
-    """The median runs of some methods on each world that does not move: what the viewer of the page
-    of results has of a method there.
+def list_typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
+    """List the median runs of some methods on each world that does not move.
+
+    The viewer of the page of results has their paths.
     """
     for each in study.shown:
         if each["median"] and each["problem"] and each["method"] in methods:
@@ -235,22 +237,22 @@ def typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
                 yield each, run, problem, study.data["workspaces"][problem["workspace"]]
 
 
-def not_proposed(found: tuple[SimpleNamespace, Any]) -> bool:
-    """Whether a run is not of the method that its paper proposes."""
+def is_not_proposed(found: tuple[SimpleNamespace, Any]) -> bool:
+    """Tell whether a run is of another method than the one that its paper proposes."""
     study, (shown, *_) = found
-    return shown["method"] != algorithm_of(study.key)
+    return shown["method"] != find_algorithm(study.key)
 
 
-def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
-    """The values of a setting in the methods of a study: one for all of them, or each with its
+def describe_value(study: SimpleNamespace, methods: list[str], setting: str) -> str:
+    """Return the values of a setting in the methods of a study: one for all, or each with its
     methods.
     """
     given: dict[str, list[str]] = {}
     for method in methods:
         resolved = study.definition.resolve_settings(method)
         if setting in resolved:
-            label = study.job.labels.get(method, in_words(method))
-            given.setdefault(in_words(resolved[setting]), []).append(label)
+            label = study.job.labels.get(method, describe_setting(method))
+            given.setdefault(describe_setting(resolved[setting]), []).append(label)
     values = ", ".join(
         value
         if len(given) == 1
@@ -260,8 +262,8 @@ def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
     return f"{study.name}: {values}" if values else ""
 
 
-def resting(study: SimpleNamespace, methods: set[str]) -> list[Any]:
-    """The claims of a study whose checks name one of some methods."""
+def select_claims(study: SimpleNamespace, methods: set[str]) -> list[Any]:
+    """Return the claims of a study whose checks name one of some methods."""
     checks = {claim.id: claim.checks for claim in study.definition.claims}
     named = {name: set(re.findall(r"\w+", repr(own))) for name, own in checks.items()}
     return [claim for claim in study.claims if named[claim["id"]] & methods]

@@ -24,9 +24,9 @@ WIDE, TALL = 8.8, 3.9
 """Widths of the pictures for screens and for phones, in inches."""
 
 
-def scaled(numbers: pd.DataFrame) -> np.ndarray:
-    """Return where printed numbers lie on a scale on which ours is 0 and the ends of our range are
-    -1 and 1: (n,).
+def scale_numbers(numbers: pd.DataFrame) -> np.ndarray:
+    """Return the places (n,) of printed numbers on a scale from the low end of our range (-1) to
+    the high end (1), with ours at 0.
     """
     ours, printed = numbers["value_ours_scaled"], numbers["value_published"]
     below = printed < ours
@@ -40,9 +40,9 @@ def scaled(numbers: pd.DataFrame) -> np.ndarray:
     return np.clip(np.where(inside, places, outside), -FAR, FAR)
 
 
-def stacked(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where dots are drawn, and how many dots above or below the line each stands, so that
-    none hides another: (n,) each.
+def stack_dots(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the places of dots, and their levels above or below the line, (n,) each, so that none
+    hides another.
     """
     places, levels = places.copy(), np.zeros(len(places))
     columns = np.round(places / STEP)
@@ -56,12 +56,13 @@ def stacked(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figure:
-    """Return the picture. numbers: those that count, of `numbers.csv`. names: of papers, by study.
-    width: in inches.
+    """Draw all printed numbers, a strip per table.
+
+    numbers: rows of `numbers.csv` that count. names: study -> name of the paper. width: in inches.
     """
     ranged = numbers[numbers["low95_predicted"].notna() & numbers["position"].notna()]
     strips = [(place, own) for place, own in ranged.groupby(["study", "table"], sort=False)]
-    dots = [stacked(scaled(own)) for _, own in strips]
+    dots = [stack_dots(scale_numbers(own)) for _, own in strips]
     heights = [max(3.0, np.ptp(levels) + 3) * HEIGHT for _, levels in dots]
     wide = width > TALL
     total = sum(heights) + (1.0 if wide else 1.4)
@@ -105,7 +106,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
         if wide:
             _write(axes, 1.34, sum(heights) + 0.12, "why it proves little", "left")
         axes.legend(
-            handles=[_dots([0], [0], *look)[0] for look in LOOKS.values()],
+            handles=[_build_dots([0], [0], *look)[0] for look in LOOKS.values()],
             labels=list(LOOKS),
             loc="lower center",
             bbox_to_anchor=(0.5, 1.0 + 0.2 / sum(heights)),
@@ -126,6 +127,7 @@ LOOKS = {
 
 
 def _draw_strip(axes: Axes, own: pd.DataFrame, places: np.ndarray, heights: np.ndarray) -> None:
+    """Draw the dots of a table, filled inside our range and pale where it is too wide to tell."""
     wide, inside = own["wide"].astype(bool), own["position"] == "inside"
     for chosen, (edge, face) in (
         (~wide & inside, LOOKS["inside our range"]),
@@ -133,10 +135,11 @@ def _draw_strip(axes: Axes, own: pd.DataFrame, places: np.ndarray, heights: np.n
         (wide & inside, ("0.65", "0.8")),
         (wide & ~inside, ("0.65", "white")),
     ):
-        axes.add_line(_dots(places[chosen], heights[chosen], edge, face)[0])
+        axes.add_line(_build_dots(places[chosen], heights[chosen], edge, face)[0])
 
 
-def _dots(x: object, y: object, edge: str, face: str) -> list[mpl.lines.Line2D]:
+def _build_dots(x: object, y: object, edge: str, face: str) -> list[mpl.lines.Line2D]:
+    """Build round marks at places, with colours of edge and face."""
     look = {"marker": "o", "linestyle": "", "markersize": 4.6, "markeredgewidth": 0.9}
     return [mpl.lines.Line2D(x, y, markeredgecolor=edge, markerfacecolor=face, **look)]
 

@@ -91,12 +91,12 @@ def main() -> None:
     numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
     for key, answer in answers.items():
         own = claims[claims["study"] == key]
-        page = paper(titles[key], answer, own, RESULTS / key, tables[key])
+        page = build_paper_page(titles[key], answer, own, RESULTS / key, tables[key])
         (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
-    (KEPT / "identified.md").write_text(identified(KEPT, studies), encoding="utf-8")
+    (KEPT / "identified.md").write_text(build_identified_page(KEPT, studies), encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
     labels = {key: study.labels for key, study in studies.items()}
-    README.write_text(with_block(readme, BLOCK, block(KEPT, labels)), encoding="utf-8")
+    README.write_text(replace_block(readme, BLOCK, build_block(KEPT, labels)), encoding="utf-8")
     if faults := [f"{key}: {line}" for key, each in answers.items() for line in each.faults]:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
@@ -111,8 +111,9 @@ def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts
 
 
 def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
-    """Copy the tables of results into docs/outcome. Raises FileNotFoundError if results are
-    missing. settings: those of methods.
+    """Copy the tables of results into docs/outcome.
+
+    settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     for name in ("numbers.csv", "methods.csv", WHOLES):
@@ -121,7 +122,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     for key in studies:
         for name in OF_STUDY:
             shutil.copyfile(RESULTS / key / name, KEPT / f"{key}_{name}")
-    claims = with_papers_size(pd.read_csv(RESULTS / "claims.csv"), pd.read_csv(FULL / "claims.csv"))
+    claims = add_papers_size(pd.read_csv(RESULTS / "claims.csv"), pd.read_csv(FULL / "claims.csv"))
     claims.to_csv(KEPT / "claims.csv", index=False)
     checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in studies)
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
@@ -129,7 +130,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     settings.to_csv(KEPT / "settings.csv", index=False)
 
 
-def paper(
+def build_paper_page(
     title: str,
     answer: texts.FilledText,
     claims: pd.DataFrame,
@@ -139,8 +140,8 @@ def paper(
     """Return the page of a paper, as markdown: the answer, its main claims, and its tables with the
     printed number beside ours in each cell.
 
-    folder: of the study's results. tables: those with printed numbers, name -> title, and how many
-    columns name the rows.
+    folder: the study's results. tables: name -> title, and how many columns name the rows, for
+    tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds"}
@@ -156,14 +157,15 @@ def paper(
     for name, (table_title, heads) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
-        laid = _beside(ours, numbers.dropna(subset="table_row"), heads)
+        laid = _place_beside(ours, numbers.dropna(subset="table_row"), heads)
         parts += [f"## {naming.format_heading(name)}: {table_title}", write_table(laid)]
     return "\n\n".join(parts) + "\n"
 
 
-def identified(folder: Path, studies: Mapping[str, Study]) -> str:
-    """Return the page of the printed lengths that are lengths of paths that can be listed, as
-    markdown, from the audits in a folder.
+def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
+    """Return the page of printed lengths that are lengths of listed paths, as markdown.
+
+    folder: has the audits, from which the rows come.
     """
     picture = (
         "![The paths of Song 2016 on their grid, with the numbers of their cells](identified.png)"
@@ -183,11 +185,11 @@ def identified(folder: Path, studies: Mapping[str, Study]) -> str:
         )
         names = {"item": "in", "printed": "printed", "limit": "ours", "arithmetic": "paths"}
         shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
-        parts += [f"## {name_of(key)}", write_table(shown.astype(str).set_index("in"))]
+        parts += [f"## {format_name(key)}", write_table(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
 
 
-def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
+def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
     """Return a table with the printed number before our range in each cell, or before ours."""
     cells = ours.iloc[:, heads:].to_numpy()
     for number in numbers.to_dict("records"):
@@ -198,14 +200,15 @@ def _beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFra
     return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
 
 
-def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the README's answers, picture and table of methods, from a folder's tables. labels: of
-    studies, by name.
+def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the README's answers, picture and table of methods, from a folder's tables.
+
+    labels: study -> name -> printed name.
     """
     numbers, claims, of_problems = (pd.read_csv(folder / name) for name in TABLES)
     answers = pd.read_csv(folder / TEXTS)
     listed = "\n".join(
-        f"- **[{name_of(key)}]({KEPT}/{key}.md): {title}.** {text}"
+        f"- **[{format_name(key)}]({KEPT}/{key}.md): {title}.** {text}"
         for key, title, text in answers.itertuples(index=False)
     )
     said = f"{headline.describe_numbers(numbers)} {headline.describe_claims(claims)}"
@@ -214,16 +217,19 @@ def block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
         listed,
         PICTURE,
         f"*{said} {RANGE}*",
-        methods_by_family(of_problems, labels),
+        build_methods_table(of_problems, labels),
     ]
     return "\n\n".join(parts)
 
 
-def methods_by_family(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the table of the papers' methods, and what its columns mean. labels: by study."""
+def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the table of the papers' methods, and the meaning of its columns.
+
+    labels: study -> name -> printed name.
+    """
     rows = methods.group_by_family(of_problems)
     named = {
-        f"{study}/{name}": f"{name_of(study)}, {label}"
+        f"{study}/{name}": f"{format_name(study)}, {label}"
         for study, own in labels.items()
         for name, label in own.items()
     }
@@ -231,18 +237,20 @@ def methods_by_family(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[st
     return f"{write_table(laid)}\n\n*{GENTLY}*"
 
 
-def name_of(key: str) -> str:
-    """Return the name of a study in a sentence.
+def format_name(key: str) -> str:
+    """Return the name of a study for use in a sentence.
 
-    >>> name_of("song2016"), name_of("meledje")
+    >>> format_name("song2016"), format_name("meledje")
     ('Song 2016', 'Meledje')
     """
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
 
 
-def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
+def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     """Return claims of scale extended with one more column after the verdict,
-    `verdict_papers_size`: that of the same claim at scale full.
+    `verdict_papers_size`.
+
+    It has the verdict of the same claim at scale full.
     """
     keys = ["study", "id", "variant"]
     theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
@@ -252,9 +260,10 @@ def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     return both[columns]
 
 
-def with_block(text: str, name: str, block: str) -> str:
-    """Return the text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises
-    ValueError if there is no such part.
+def replace_block(text: str, name: str, block: str) -> str:
+    """Return the text with the part between `<!-- name -->` and `<!-- /name -->` replaced.
+
+    Raises ValueError if there is no such part.
     """
     begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
     if not 0 <= text.find(begin) < text.find(end):

@@ -1,6 +1,6 @@
-"""The tables of keys in config/README.md, generated from the models, and those of columns in
-results/README.md, from their declarations: `python docs/tables_of_keys.py` updates them, and a
-test ensures that they are up to date.
+"""Tables of keys in config/README.md, generated from the models, and of columns in
+results/README.md, from their declarations. `python docs/tables_of_keys.py` updates them, and a test
+ensures that they are up to date.
 """
 
 import re
@@ -39,7 +39,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("An entry of a table's `values`", table_kinds.TableValue),
         ("An entry of a table's `monotone`", table_kinds.Monotone),
         ("A **figure**", figure.Figure),
-        ("A panel has `kind`, and by kind", panels.kinds()),
+        ("A panel has `kind`, and by kind", panels.list_kinds()),
     ],
     "layout": [
         ("The file", artefacts.LayoutFile),
@@ -61,30 +61,35 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
 _ABOVE = ("kind", "test")
 
 
-def described(name: str) -> str:
-    """The tables of a file's keys, as Markdown."""
+def describe_keys(name: str) -> str:
+    """Return the tables of a file's keys, as Markdown."""
     return "\n\n".join(
-        f"{above}:\n\n{_by_kind(of) if isinstance(of, dict) else _table(of)}"
+        f"{above}:\n\n{_format_by_kind(of) if isinstance(of, dict) else _format_table(of)}"
         for above, of in GROUPS[name]
     )
 
 
-def _table(model: type[Model]) -> str:
-    """A row for each key."""
+def _format_table(model: type[Model]) -> str:
+    """Return a table with a row for each key of a model."""
     rows = [
-        f"| {_name(name, field)} | {field.description} |"
+        f"| {_format_name(name, field)} | {field.description} |"
         for name, field in list_keys(model).items()
     ]
     return "\n".join(["| key | means |", "| --- | --- |", *rows])
 
 
-def _by_kind(models: dict[str, type[Model]]) -> str:
-    """A row for each key, with the kinds in which it has this meaning; first those of all kinds."""
+def _format_by_kind(models: dict[str, type[Model]]) -> str:
+    """Return a table with a row for each key and meaning, and the kinds that share it.
+
+    Keys of more than half of the kinds come first.
+    """
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
         for name, field in list_keys(model).items():
             if name not in _ABOVE:
-                rows.setdefault((_name(name, field), field.description), []).append(f"`{kind}`")
+                rows.setdefault((_format_name(name, field), field.description), []).append(
+                    f"`{kind}`"
+                )
     shared = sorted(
         rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0
     )
@@ -100,8 +105,8 @@ def _by_kind(models: dict[str, type[Model]]) -> str:
     )
 
 
-def _name(name: str, field: FieldInfo) -> str:
-    """A required key is bold."""
+def _format_name(name: str, field: FieldInfo) -> str:
+    """Return the name of a key, bold if it is required."""
     return f"**`{name}`**" if field.is_required() else f"`{name}`"
 
 
@@ -109,34 +114,38 @@ def _name(name: str, field: FieldInfo) -> str:
 _PRINTED = {kind: word for word, kind in columns.VALUES.items()} | {columns.RunName: "word"}
 
 
-def columns_of(table: columns.Table) -> str:
-    """The table of columns of a kind of file, as Markdown."""
-    return _columns(
+def describe_columns(table: columns.Table) -> str:
+    """Return the table of columns of a kind of file, as Markdown."""
+    return _format_columns(
         [
-            (name, kind, about.unit, _meaning(about))
+            (name, kind, about.unit, _join_meaning(about))
             for name, (kind, about) in columns.read_columns(*table.every).items()
         ]
     )
 
 
-def columns_of_drives(table: columns.Table) -> str:
-    """Likewise of drives: columns that mean something else, and those that only drives have."""
+def describe_columns_of_drives(table: columns.Table) -> str:
+    """Return columns that mean something else for drives, and those that only drives have."""
     every, own = columns.read_columns(*table.every), columns.read_columns(table.drives)
     other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
-    return _columns(
+    return _format_columns(
         [
             *other,
-            *((name, kind, about.unit, _meaning(about)) for name, (kind, about) in own.items()),
+            *(
+                (name, kind, about.unit, _join_meaning(about))
+                for name, (kind, about) in own.items()
+            ),
         ]
     )
 
 
-def _meaning(about: columns.Column) -> str:
+def _join_meaning(about: columns.Column) -> str:
+    """Return the meaning of a column with its detail."""
     return "; ".join(filter(None, [about.meaning, about.detail]))
 
 
-def columns_of_claims(tables: tuple[type, ...]) -> str:
-    """The table of columns of a table of claims, as Markdown."""
+def describe_columns_of_claims(tables: tuple[type, ...]) -> str:
+    """Return the table of columns of a table of claims, as Markdown."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
         for name, (kind, about) in columns.read_columns(*tables).items()
@@ -144,8 +153,8 @@ def columns_of_claims(tables: tuple[type, ...]) -> str:
     return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
 
 
-def _columns(rows: list[tuple[str, type, str, str]]) -> str:
-    """Name, type, unit and meaning of each column."""
+def _format_columns(rows: list[tuple[str, type, str, str]]) -> str:
+    """Return a table with name, type, unit and meaning of each column."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |"
         for name, kind, unit, meaning in rows
@@ -153,26 +162,27 @@ def _columns(rows: list[tuple[str, type, str, str]]) -> str:
     return "\n".join(["| column | values | unit | meaning |", "| --- | --- | --- | --- |", *lines])
 
 
-def renewed(text: str) -> str:
-    """The text of config/README.md with tables that match the current models."""
-    return _renewed(text, {f"{name}.yaml": described(name) for name in GROUPS}, "keys")
+def update_keys(text: str) -> str:
+    """Return the text of config/README.md with tables that match the current models."""
+    return _update_tables(text, {f"{name}.yaml": describe_keys(name) for name in GROUPS}, "keys")
 
 
-def renewed_columns(text: str) -> str:
-    """The text of results/README.md with tables that match the current declarations."""
-    every = {name: columns_of(table) for name, table in columns.TABLES.items()}
+def update_columns(text: str) -> str:
+    """Return the text of results/README.md with tables that match the current declarations."""
+    every = {name: describe_columns(table) for name, table in columns.TABLES.items()}
     drives = {
-        f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()
+        f"{name} of drives": describe_columns_of_drives(table)
+        for name, table in columns.TABLES.items()
     }
     claims_tables = {
-        name: columns_of_claims(tables) for name, tables in claim_columns.TABLES.items()
+        name: describe_columns_of_claims(tables) for name, tables in claim_columns.TABLES.items()
     }
-    return _renewed(text, every | drives | claims_tables, "columns")
+    return _update_tables(text, every | drives | claims_tables, "columns")
 
 
-def _renewed(text: str, tables: dict[str, str], what: str) -> str:
-    """A text with other tables between marks, such as `<!-- keys of claims.yaml -->` and `<!--
-    /keys -->`.
+def _update_tables(text: str, tables: dict[str, str], what: str) -> str:
+    """Replace the tables between marks, such as `<!-- keys of claims.yaml -->` and `<!-- /keys
+    -->`.
     """
     for name, table in tables.items():
         marked = re.compile(
@@ -183,5 +193,5 @@ def _renewed(text: str, tables: dict[str, str], what: str) -> str:
 
 
 if __name__ == "__main__":
-    for file, change in ((README, renewed), (RESULTS_README, renewed_columns)):
+    for file, change in ((README, update_keys), (RESULTS_README, update_columns)):
         file.write_text(change(file.read_text(encoding="utf-8")), encoding="utf-8")

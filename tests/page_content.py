@@ -188,7 +188,7 @@ def page(folder: Path) -> SimpleNamespace:
         "Lengths.\n(a) run one/first/p/b/0.\n(a) lowest mean: b.\n"
     )
     summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "methods")]
-    made = build.page(job(), folder, summary)
+    made = build.gather_content(job(), folder, summary)
     made.data |= viewed()
     study = made.data["studies"]["one"]
     study["shown"] = made.studies["one"].shown = shown()

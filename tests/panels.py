@@ -3,7 +3,7 @@
 from types import ModuleType
 from typing import Any
 
-from bezierplan.figures.panels import Panel, panel_of
+from bezierplan.figures.panels import Panel, build_panel
 
 
 def options_of(kind: ModuleType, **given: Any) -> Panel:
@@ -21,4 +21,4 @@ def options_of(kind: ModuleType, **given: Any) -> Panel:
 
 def panels_of(given: list[dict[str, Any]]) -> list[Panel]:
     """Panels as a figure has them."""
-    return [panel_of(panel) for panel in given]
+    return [build_panel(panel) for panel in given]

@@ -5,7 +5,7 @@ import re
 import pytest
 from studies import studies
 
-from bezierplan.figures.caption import MOST_FINDINGS, tell_both
+from bezierplan.figures.caption import MOST_FINDINGS, describe_verdicts
 from bezierplan.study import captions
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.runs_behind import list_methods
@@ -57,7 +57,7 @@ def test_the_runs_shown_are_named_where_they_say_something_else():
     ],
 )
 def test_two_verdicts(many, shown, text):
-    assert tell_both(many, 40, shown, 1).startswith(text)
+    assert describe_verdicts(many, 40, shown, 1).startswith(text)
 
 
 def test_a_caption_of_a_changed_study_leaves_verdicts_to_the_page():

@@ -231,7 +231,7 @@ def drawn(found: Results, *own: dict, columns: int = 1) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
     with tempfile.TemporaryDirectory() as folder:
         file = str(File(folder) / "figure.csv")
-        sheet.write_data(sheet.data(panels_of(list(own)), sources(found)), file)
+        sheet.write_data(sheet.collect_data(panels_of(list(own)), sources(found)), file)
         return sheet.draw(panels_of(list(own)), sheet.read_data(file), scene(found), columns)
 
 
@@ -262,7 +262,7 @@ def of_run(found: Results, **keys) -> pd.DataFrame:
 
 def test_csv_keeps_every_number(tmp_path):
     found, own, _ = SHEETS["run"]
-    frame = sheet.data(panels_of(own), sources(found))
+    frame = sheet.collect_data(panels_of(own), sources(found))
     assert frame.columns[0] == "panel"
     assert sorted(frame["panel"].unique()) == [0, 1, 2, 3, 4]
     sheet.write_data(frame, str(tmp_path / "figure.csv"))
@@ -339,7 +339,7 @@ def test_paths_side_by_side():
 def test_a_problem_is_drawn_without_a_run():
     place = results().problems["0_15"]
     (panel,) = panels_of([{"kind": "problem", "problem": "0_15", "letters": ["S", "T"]}])
-    frame = sheet.data([panel], Sources(problems={"0_15": place}))
+    frame = sheet.collect_data([panel], Sources(problems={"0_15": place}))
     assert frame[["part", "x", "y"]].to_numpy().tolist() == [
         ["start", 5.0, 5.0],
         ["target", 35.0, 35.0],
@@ -489,7 +489,7 @@ def test_order_of_runs_changes_no_bit():
         options_of(boxes, metric="objective"),
         options_of(convergence, **hue),
     ):
-        data = kinds_of_panel.kind_module(panel.kind).data
+        data = kinds_of_panel.load_kind(panel.kind).data
         pd.testing.assert_frame_equal(data(found, panel), data(other, panel))
 
 
@@ -560,10 +560,10 @@ def test_a_statistic_of_some_runs_has_an_open_mark():
 
 def test_large_fields_are_drawn_by_their_circles():
     circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
-    small = workspace.parts(random_field.from_circles(circles))
+    small = workspace.list_parts(random_field.from_circles(circles))
     counts = {"free": 1681 - 29, "occupied": 29, "corner": 2, "circle": 1}
     assert small["part"].value_counts().to_dict() == counts
-    large = workspace.parts(
+    large = workspace.list_parts(
         random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0)))
     )
     assert large["part"].tolist() == ["corner", "corner", "circle"]
@@ -633,7 +633,7 @@ def test_functions_get_the_published_tables_that_they_ask_for():
     published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
     panel = {"kind": "lines", "data": "own", "published": "table1", "x": "k", "metric": "value"}
     found = Sources(functions={"own": lambda tables: tables["table1"]}, published=published)
-    assert sheet.data(panels_of([panel]), found)["value"].tolist() == [3, 4]
+    assert sheet.collect_data(panels_of([panel]), found)["value"].tolist() == [3, 4]
 
 
 # What is drawn, number by number: small tables, every column unlike the others

@@ -13,12 +13,12 @@ from bezierplan.figures import latex
 
 def written(**columns: list[str]) -> str:
     caption = "Shares & lengths, 50 % of them"
-    return latex.document(pd.DataFrame(columns), caption, "tab:s-table1")
+    return latex.format_table(pd.DataFrame(columns), caption, "tab:s-table1")
 
 
 @pytest.mark.parametrize("sign", list("&%$#_{}~^\\<>"))
 def test_no_sign_is_a_command(sign):
-    text = latex.escaped(f"a{sign}b")
+    text = latex.escape_signs(f"a{sign}b")
     assert text != f"a{sign}b"
     assert not re.search(r"(?<!\\)[&%$#_~^]", text)
 
@@ -66,8 +66,8 @@ def test_printed_number_stands_above_ours_with_its_mark():
         ("1", "0", "3", "above", "False", "", "2.2"),
         ("0", "1", "4", "no range", "", "", ""),
     ]
-    over = latex.laid_over(ours, pd.DataFrame(numbers, columns=columns), 1)
-    text = latex.document(over, "", "", [SIGNS_MEAN])
+    over = latex.stack_numbers(ours, pd.DataFrame(numbers, columns=columns), 1)
+    text = latex.format_table(over, "", "", [SIGNS_MEAN])
     assert r"\begin{tabular}{lrr}" in text
     assert (
         r"GA & \shortstack[r]{1.5 \\ $\circ$ ours 1.4 to 2} & \shortstack[r]{4 \\ 0.01} \\" in text

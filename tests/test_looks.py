@@ -38,7 +38,7 @@ def test_marks_and_words_stand_out_from_paper():
         assert contrast(colour) >= MARK, name
     marks = [mark for _, _, mark in style.LOOKS.values()]
     assert len(set(marks)) == len(marks)
-    for look in style.lines([float(number) for number in range(10)]):
+    for look in style.choose_line_styles([float(number) for number in range(10)]):
         assert contrast(look["color"]) >= MARK, look
     for colour in (style.RED, style.BLUE, style.BLACK):
         assert contrast(colour) >= TEXT - 0.5, colour
@@ -53,7 +53,10 @@ def test_methods_side_by_side_look_different(name):
             where = getattr(panel, "where", None) or {}
             methods = where.get("method")
             if isinstance(methods, list):
-                own = [(look["color"], look["marker"]) for look in style.lines(methods, looks)]
+                own = [
+                    (look["color"], look["marker"])
+                    for look in style.choose_line_styles(methods, looks)
+                ]
                 assert len(set(own)) == len(own), (key, dict(zip(methods, own)))
 
 
@@ -62,7 +65,7 @@ def test_a_chaotic_map_has_one_colour_in_twin_figures():
     colours = []
     for name in ("figure8", "figure9"):
         methods = own.figures[name].panels[0].where["method"]
-        looks = style.lines(methods, jobs.choose_looks(own))
+        looks = style.choose_line_styles(methods, jobs.choose_looks(own))
         colours.append(
             [
                 (look["color"], own.layout[name].names[method])
@@ -92,11 +95,11 @@ def test_looks_are_declared_once_or_follow_the_planner():
         "rounded": "rounded_shortest_path",
         "declared": "prm",
     }
-    looks = style.looks_of(planners, {"declared": "sky"})
+    looks = style.choose_looks(planners, {"declared": "sky"})
     assert looks["rounded"] == "black"
     assert looks["declared"] == "sky"
     assert len(set(looks.values())) == 4, (
         "two without a declaration get looks that no other method has"
     )
-    twice = style.lines(["a", "b"], {"a": "blue", "b": "blue"})
+    twice = style.choose_line_styles(["a", "b"], {"a": "blue", "b": "blue"})
     assert twice[0]["color"] != twice[1]["color"], "two lines in one panel are never alike"

@@ -15,11 +15,11 @@ ROOT = Path(__file__).parents[1]
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
     studies = read_studies()
-    shown = outcome.block(
+    shown = outcome.build_block(
         ROOT / outcome.KEPT,
         {key: study.labels for key, study in studies.items()},
     )
-    assert outcome.with_block(readme, outcome.BLOCK, shown) == readme
+    assert outcome.replace_block(readme, outcome.BLOCK, shown) == readme
 
 
 def comparison(values, ours, methods=("plain", "other")):
@@ -90,11 +90,11 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
         claims.assign(verdict=["supported", "partly", "contradicted"]),
         claims.assign(verdict=["undecided", "partly", "contradicted"]),
     )
-    found = outcome.with_papers_size(extended, full.iloc[::-1])
+    found = outcome.add_papers_size(extended, full.iloc[::-1])
     assert found["verdict"].to_list() == ["supported", "partly", "contradicted"]
     assert found["verdict_papers_size"].to_list() == ["undecided", "partly", "contradicted"]
 
 
 def test_text_without_the_part_is_told():
     with pytest.raises(ValueError, match="no part between"):
-        outcome.with_block("nothing here", "outcome", "x")
+        outcome.replace_block("nothing here", "outcome", "x")

@@ -44,7 +44,7 @@ def content(folder):
 
 @pytest.fixture(scope="module")
 def text(content, folder):
-    return build.html(content, folder)
+    return build.render_page(content, folder)
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_addresses_of_different_cells_differ(keys, primary):
     cells = [
         {"name": name, "value": value, "metric": "m", "statistic": "s"} for name, value in keys
     ]
-    found = addresses.of_cells("t/t1", cells, {"name": primary})
+    found = addresses.build_cell_addresses("t/t1", cells, {"name": primary})
     assert len(set(found)) == len(cells)
     assert not any(" " in each for each in found)
 
@@ -133,7 +133,7 @@ def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     cell |= {"value_ours": 220.0, "value_ours_scaled": 5.5, "position": None}
     spec = job().studies["one"].tables["table1"].spec
     empty = pd.DataFrame()
-    (found,) = reader._numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
+    (found,) = reader._list_numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
     assert found["beside"] == 5.5
     assert math.isclose(found["apart"], 0.1)
 
@@ -145,19 +145,19 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     (file,) = (folder / "one").rglob("table1.wholes.csv")
     columns = reader.read(file).assign(study="one", table="table1")
     evidence = reader.Evidence(numbers, claims, nothing, nothing, columns)
-    own = reader.studies(job()._replace(outcome=["one"]), folder, None, evidence)["one"]
+    own = reader.read_study_results(job()._replace(outcome=["one"]), folder, None, evidence)["one"]
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.families is None
     assert own.tables[0]["wholes"] == (
         f"length, {HOSTILE}: order reversed (rank correlation -0.5; ours 0 to 1)"
     )
-    alone = reader.studies(job(), folder, None)["one"]
+    alone = reader.read_study_results(job(), folder, None)["one"]
     assert {claim["verdict"] for claim in alone.claims} > {"supported"}
 
 
 def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(content):
-    laid = build.grid(content.studies["one"].tables[1], {})
+    laid = build.build_grid(content.studies["one"].tables[1], {})
     assert (laid.head, laid.decimals) == (["method", "length", "objective"], [2, 2])
     assert [
         (primary, keys, [cell and cell["address"] for cell in cells])
@@ -170,11 +170,11 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(c
 
 
 def test_a_scale_says_how_many_runs_it_has_and_where_the_evidence_is():
-    alone = answer.about_scale("full", [[10, 30], [100, 100], []], False)
+    alone = answer.describe_scale("full", [[10, 30], [100, 100], []], False)
     assert alone.endswith(
         "as many runs as the papers report: 10 to 100 runs per method and condition."
     )
-    assert "docs/outcome" in answer.about_scale("full", [[10, 30]], True)
+    assert "docs/outcome" in answer.describe_scale("full", [[10, 30]], True)
 
 
 def test_the_answer_to_a_paper_stands_first_and_at_its_head(text):
@@ -200,7 +200,7 @@ def comparison(effect, low, high):
 
 
 def test_strips_share_one_scale_and_keep_order():
-    (rows,) = charts.forests([comparison(-1.0, -2.0, -0.2), comparison(0.5, 0.1, 1.0)])
+    (rows,) = charts.group_comparisons([comparison(-1.0, -2.0, -0.2), comparison(0.5, 0.1, 1.0)])
     first, second = (row["strip"] for row in rows)
     assert first["reference"] == second["reference"]
     places = [strip[name] for strip in (first, second) for name in ("low95", "effect", "high95")]
@@ -213,7 +213,7 @@ def test_strips_share_one_scale_and_keep_order():
 
 def test_interval_far_beyond_the_effects_is_cut_and_an_unknown_effect_is_not_drawn():
     rows = [comparison(-1.0, -500.0, 0.5), comparison(1.0, 0.5, 1.5), comparison(None, None, None)]
-    (rows,) = charts.forests(rows)
+    (rows,) = charts.group_comparisons(rows)
     assert [row["strip"]["cut"] for row in rows] == [True, False, False]
     assert (rows[2]["strip"]["effect"], rows[2]["strip"]["low95"]) == (None, None)
 
@@ -248,7 +248,7 @@ def stored(folder, lengths, feasible, **more):
 
 def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
     files = stored(tmp_path, [5.0, 3.5, 4.0, 9.0, 8.0, 7.0, 6.0], [True] * 4 + [False] * 3)
-    (shown,), found = runs.chosen("s", "e", ExperimentView(["m"], 7, False), files)
+    (shown,), found = runs.choose_runs("s", "e", ExperimentView(["m"], 7, False), files)
     assert (shown["count"], shown["feasible"]) == (7, 4)
     assert [shown["best"], shown["median"], shown["worst"], *shown["failed"]] == [
         f"s/e/room/m/{n}" for n in (1, 2, 3, 4, 5)
@@ -259,7 +259,7 @@ def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
     assert found["runs"]["s/e/room/m/1"]["history"] == [(0, 5.0), (2, 4.0), (3, 4.0)]
     assert found["problems"]["s/e/room"]["bound"] == 3.0
     # Repeats that a chunk has beyond those of the scale are not shown.
-    (shown,), _ = runs.chosen("s", "e", ExperimentView(["m"], 1, False), files)
+    (shown,), _ = runs.choose_runs("s", "e", ExperimentView(["m"], 1, False), files)
     assert (shown["best"], shown["count"]) == ("s/e/room/m/0", 1)
 
 
@@ -268,7 +268,8 @@ def test_place_of_a_drive_is_found_where_its_way_crosses_itself():
     path = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 0.0], [0.0, 1.5]])
     places = [(0, 0), (0, 0), (1, 0), (2, 0), (3, 0), (2, 0), (1, 0), (0, 0), (0, 1), (0, 1.5)]
     assert np.allclose(
-        runs._driven(path, np.array(places, dtype=float), 1.0), [0, 0, 1, 2, 3, 4, 5, 6, 7, 7.5]
+        runs._measure_way(path, np.array(places, dtype=float), 1.0),
+        [0, 0, 1, 2, 3, 4, 5, 6, 7, 7.5],
     )
 
 
@@ -281,7 +282,7 @@ def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
     problem_files.write(room, {"room": "room"}, files.problems, {"room": world})
     trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
     parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
-    _, found = runs.chosen("s", "e", ExperimentView(["m"], 1, True), files)
+    _, found = runs.choose_runs("s", "e", ExperimentView(["m"], 1, True), files)
     (drive,) = found["runs"].values()
     assert (drive["steps"], drive["driven"], drive["control"]) == (2.5, [0, 1, 2, 3], [])
     assert (drive["collision"], drive["collision_step"]) == ([2.0, 0.5], 1.5)
@@ -298,7 +299,7 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     import shapely
 
     path = Curve(kind, np.array(points) / 1000)
-    drawn = runs._simplified(paths.steps(path), 0.05)
+    drawn = runs._reduce_points(paths.sample_path(path), 0.05)
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01

@@ -47,7 +47,7 @@ def browser():
 def small(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
     file = folder / "index.html"
-    file.write_text(build.html(small_page(folder), folder), encoding="utf-8")
+    file.write_text(build.render_page(small_page(folder), folder), encoding="utf-8")
     return file
 
 

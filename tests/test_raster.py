@@ -116,12 +116,14 @@ def test_a_start_in_an_occupied_cell_is_refused():
 
 
 def test_a_fine_raster_is_drawn_as_its_polygons():
-    parts = picture.parts(drawn("gaps", 0.1, "overlap"))
+    parts = picture.list_parts(drawn("gaps", 0.1, "overlap"))
     assert set(parts["part"]) == {"corner", "ring"}
     assert parts[parts["part"] == "ring"]["obstacle"].nunique() == len(
         drawn("gaps", 0.1, "overlap").shapes.obstacles
     )
-    assert {"free", "occupied", "ring"} <= set(picture.parts(drawn("gaps", 1.0, "overlap"))["part"])
+    assert {"free", "occupied", "ring"} <= set(
+        picture.list_parts(drawn("gaps", 1.0, "overlap"))["part"]
+    )
 
 
 def test_a_workspace_that_is_no_file_is_told():

@@ -96,7 +96,7 @@ def test_panels_that_are_written_once_are_those_written_out():
 def test_tables_of_keys_are_those_of_the_models():
     """`python docs/tables_of_keys.py` renews them."""
     text = keys.README.read_text(encoding="utf-8")
-    assert keys.renewed(text) == text
+    assert keys.update_keys(text) == text
     assert all(f"<!-- keys of {name}.yaml -->" in text for name in keys.GROUPS)
 
 

@@ -134,7 +134,7 @@ def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
             {"kind": "tracks", "title": "point", **runs, **BY, "point": 1},
         ]
     )
-    frame = sheet.data(own, Sources({"routes": found}, functions={"surface": surface}))
+    frame = sheet.collect_data(own, Sources({"routes": found}, functions={"surface": surface}))
     sheet.write_data(frame, str(tmp_path / "figure.csv"))
     read = sheet.read_data(str(tmp_path / "figure.csv"))
     figure = sheet.draw(own, read, sheet.FigureScene({"routes": found.problems}, {}, {}, "m"), 2)

@@ -176,7 +176,7 @@ class Judgement:
 
     def _repr_html_(self) -> str:
         """Return the picture and what the command line prints, for notebooks."""
-        return drawn_path.html(answers.write_html(self), self.plot)
+        return drawn_path.build_html(answers.write_html(self), self.plot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -287,7 +287,7 @@ class Comparison:
 
     def _draw(self, problem: str, axes: Axes | None) -> Axes:
         """Draw the best path of each method on a problem."""
-        looks = style.lines([*self.answers], style.LOOK_OF_PLANNER)
+        looks = style.choose_line_styles([*self.answers], style.LOOK_OF_PLANNER)
         for number, (label, answered) in enumerate(self.answers.items()):
             own = [each for each in answered if each.problem.name == problem]
             best = max(own, key=lambda each: (each.feasible, each.path is not None, -each.length))
@@ -298,7 +298,9 @@ class Comparison:
 
     def _repr_html_(self) -> str:
         """Return the picture and the table, for notebooks."""
-        return drawn_path.html(self.table.to_html(float_format="%.4g"), *self._draws().values())
+        return drawn_path.build_html(
+            self.table.to_html(float_format="%.4g"), *self._draws().values()
+        )
 
 
 def read_map(
@@ -884,7 +886,7 @@ def answer_of(rerun: Any, run: str) -> Answer:
 
 def _draw_html(home: Problem | Workspace) -> str:
     """Return the picture of a map or a problem, for notebooks."""
-    return drawn_path.html("", partial(drawn_path.draw, home))
+    return drawn_path.build_html("", partial(drawn_path.draw, home))
 
 
 # Maps and problems lie in a layer below that of figures.

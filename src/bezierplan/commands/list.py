@@ -9,7 +9,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import kinds
 from bezierplan.commands import find_study_path, is_study, read_studies
 from bezierplan.figures import panels
-from bezierplan.figures.page import in_printed_order
+from bezierplan.figures.page import sort_as_printed
 from bezierplan.planners import list_planners, load_planner, read_settings
 from bezierplan.schema.checked import check_known
 from bezierplan.study.definition import Study
@@ -74,7 +74,7 @@ def list_things(studies: Iterable[Study], names: Sequence[str]) -> Iterator[tupl
 
 def _list_titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
     """Return the full name and the title of each table or figure, in the order of print."""
-    return ((f"{study.key}_{name}", artefacts[name].title) for name in in_printed_order(artefacts))
+    return ((f"{study.key}_{name}", artefacts[name].title) for name in sort_as_printed(artefacts))
 
 
 def _list_methods(study: Study) -> Rows:
@@ -122,7 +122,7 @@ NAMES: dict[str, Callable[[], Rows]] = {
     "metrics": lambda: (
         (name, f"{each.meaning} ({each.unit})") for name, each in metrics.METRICS.items()
     ),
-    "panels": lambda: _read_sentences(panels.kinds()),
+    "panels": lambda: _read_sentences(panels.list_kinds()),
     "tests": lambda: _read_sentences(kinds.list_kinds()),
     "worlds": lambda: _read_sentences(workspace_kinds.kinds()),
     "planners": lambda: _read_sentences({name: load_planner(name) for name in list_planners()}),

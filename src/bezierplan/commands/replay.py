@@ -10,7 +10,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.analysis.run_tables import find_stored_runs, is_equal
 from bezierplan.commands import read_studies
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import Sources, panel_of
+from bezierplan.figures.panels import Sources, build_panel
 from bezierplan.study.replays import replay
 
 MOMENTS = (0.1, 0.4, 0.7, 1.0)
@@ -62,8 +62,8 @@ def draw_drive(results: Results, picture: Path) -> None:
     """Save a picture of the drive in the results of one run."""
     experiment, repeat = results.runs[["experiment", "repeat"]].iloc[0]
     shown = {"kind": "snapshot", "experiment": experiment, "pick": {"repeat": int(repeat)}}
-    panels = [panel_of(shown | {"at": moment}) for moment in MOMENTS]
+    panels = [build_panel(shown | {"at": moment}) for moment in MOMENTS]
     problems = {experiment: results.problems}
-    frame = sheet.data(panels, Sources({experiment: results}))
+    frame = sheet.collect_data(panels, Sources({experiment: results}))
     figure = sheet.draw(panels, frame, sheet.FigureScene(problems, {}, {}, ""), columns=2)
     sheet.save(figure, str(picture))

@@ -16,10 +16,10 @@ class CaptionClaim(NamedTuple):
 
 
 class Caption(NamedTuple):
-    """A caption in parts.
+    """The parts of a caption.
 
-    remark: what the paper shows, where no claim is about it, or which runs means leave out.
-    behind: the runs that it shows.
+    remark: the paper's finding where no claim is about it, or the runs that means leave out.
+    behind: the runs that are shown.
     """
 
     title: str
@@ -34,26 +34,26 @@ class Caption(NamedTuple):
         return " ".join(f"{part}." for part in (self.title, *found, self.remark, shown) if part)
 
 
-def tell(verdict: str, runs: int, which: str = "") -> str:
-    """Return a verdict in words with the runs that it rests on.
+def describe_verdict(verdict: str, runs: int, which: str = "") -> str:
+    """Return a verdict in words with the number of runs behind it.
 
-    >>> tell("contradicted", 4000), tell("undecided", 10, "these ")
+    >>> describe_verdict("contradicted", 4000), describe_verdict("undecided", 10, "these ")
     ('contradicted by 4,000 runs', 'not decided by these 10 runs')
     """
     words = {0: "our calculation", 1: "this run" if which else "1 run"}
     return WORDS[verdict].caption.format(words.get(runs, f"{which}{runs:,} runs"))
 
 
-def tell_both(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
-    """Return the verdict of many runs, after that of those shown if it differs.
+def describe_verdicts(verdict: str, runs: int, verdict_here: str, runs_here: int) -> str:
+    """Return the verdict of many runs, preceded by that of the runs shown if the two differ.
 
-    >>> tell_both("contradicted", 4000, "undecided", 10)
+    >>> describe_verdicts("contradicted", 4000, "undecided", 10)
     'not decided by these 10 runs, contradicted by 4,000'
     """
-    many = tell(verdict, runs)
+    many = describe_verdict(verdict, runs)
     if verdict_here in ("", verdict, "depends", "untestable") or verdict == "untestable":
         return many
-    first = tell(verdict_here, runs_here, "these ")
+    first = describe_verdict(verdict_here, runs_here, "these ")
     if verdict == "depends":
         return f"{first}, {'and' if verdict_here == 'undecided' else 'but'} {many}"
     return f"{first}, {many.removesuffix(' runs')}"

@@ -36,10 +36,11 @@ def draw(
     map: bool = True,
     **look: Any,
 ) -> Axes:
-    """Draw a map, or a problem with a path in a look, its first collision, and the exact shortest
-    path (n, 2), on axes or on new ones, and return these.
+    """Draw a map, or a problem with a path, and return the axes.
 
-    map: whether the map, the ends and the exact shortest path are drawn.
+    axes: new ones if left out. shortest: points (n, 2) of the exact shortest path. collision: the
+    path's first one. map: if False, the map, the ends and the exact shortest path are left out.
+    look: properties of matplotlib for the path.
     """
     from bezierplan.figures.panels import paths, workspace
 
@@ -47,20 +48,20 @@ def draw(
         import matplotlib.pyplot as plt
 
         axes = plt.figure(layout="constrained").add_subplot()
-    parts: dict[str, Any] = {"path": paths.steps(path) if path else np.empty((0, 2))}
+    parts: dict[str, Any] = {"path": paths.sample_path(path) if path else np.empty((0, 2))}
     if map:
-        workspace.draw_home(axes, getattr(home, "workspace", home))
+        workspace.draw_workspace(axes, getattr(home, "workspace", home))
         ends = {name: [getattr(home, name)] for name in workspace.ENDS if hasattr(home, name)}
         parts |= ends if shortest is None else ends | {"bound": shortest}
     if collision:
         parts["collision"] = [collision]
     looks = paths.LOOK | {"path": paths.LOOK["path"] | look}
-    style.draw_parts(axes, workspace.places(parts), looks)
+    style.draw_parts(axes, workspace.list_points(parts), looks)
     return axes
 
 
 def add_legend(figure: Figure) -> None:
-    """Name each look of all panels once, below them."""
+    """Add one legend below all panels, in which each label stands once."""
     named: dict[str, Any] = {}
     for axes in figure.axes:
         handles, labels = axes.get_legend_handles_labels()
@@ -69,8 +70,8 @@ def add_legend(figure: Figure) -> None:
     figure.legend(named.values(), named, loc="outside lower center", ncols=columns)
 
 
-def html(text: str, *draws: Callable[..., object]) -> str:
-    """Return what functions draw, each on axes of its own, and a text below, as HTML."""
+def build_html(text: str, *draws: Callable[..., object]) -> str:
+    """Return HTML that shows a picture, one axes for each function that draws, above a text."""
     drawn = io.BytesIO()
     save(drawn, *draws, **_NOTEBOOK)
     data = base64.b64encode(drawn.getvalue()).decode()
@@ -78,8 +79,10 @@ def html(text: str, *draws: Callable[..., object]) -> str:
 
 
 def save(file: File | io.BytesIO, *draws: Callable[..., object], **how: Any) -> None:
-    """Save what functions draw, the first ones of many, each on axes of its own, as a picture with
-    a legend, of the kind that the file's suffix names. how: options of matplotlib's `savefig`.
+    """Save a picture with a legend, in which each function draws on axes of its own.
+
+    file: its suffix names the kind of picture. draws: functions of axes, of which the first ones
+    are drawn. how: options of matplotlib's `savefig`.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
 
-from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
+from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, list_kinds
 from bezierplan.schema.model import (
     Line,
     Model,
@@ -15,24 +15,29 @@ from bezierplan.schema.model import (
     show_value,
 )
 
-_PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", kinds())]])
+_PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", list_kinds())]])
 _PARTS = TypeAdapter(
     Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
 )
 
 
-def _joined(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
-    """The keys of both; mappings that stand in both are joined likewise."""
+def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
+    """Return the keys of a part and of all parts; a part's value wins, and mappings are merged."""
+    # Mappings such as `where` may be given for a part and for all.
     both = {
-        key: _joined(part[key], common[key])
+        key: _merge_keys(part[key], common[key])
         for key in part.keys() & common.keys()
         if isinstance(part[key], dict) and isinstance(common[key], dict)
     }
     return common | part | both
 
 
-def _expanded(place: int, entry: Any) -> dict[str, Any]:
-    """What an entry at a place in a list of panels stands for, by the keys that lead there."""
+def _expand_entry(place: int, entry: Any) -> dict[str, Any]:
+    """Return the panels of an entry in a list, each by the keys that lead to it.
+
+    An entry with `each` gives several panels. Raises an error of the file if `each` is no list of
+    at least two mappings.
+    """
     if not isinstance(entry, dict) or "each" not in entry:
         return {f"{place}": entry}
     shared = {key: value for key, value in entry.items() if key != "each"}
@@ -40,16 +45,20 @@ def _expanded(place: int, entry: Any) -> dict[str, Any]:
         parts = _PARTS.validate_python(entry["each"])
     except ValidationError:
         raise build_error(f"each: {show_value(entry['each'])}: expected {EACH}") from None
-    return {f"{place}: each: {n}": _joined(part, shared) for n, part in enumerate(parts)}
+    return {f"{place}: each: {n}": _merge_keys(part, shared) for n, part in enumerate(parts)}
 
 
-def _panels(entries: Any) -> list[Panel]:
-    """The panels of a figure, each with its place in the list of the file."""
+def _read_panels(entries: Any) -> list[Panel]:
+    """Return the panels of a figure, each with its place in the list of the file.
+
+    Raises an error of the file for anything but a list, and for too many panels.
+    """
     if not isinstance(entries, list) or not entries:
         raise build_expectation("a list of panels")
     placed: dict[str, Any] = {}
     for number, entry in enumerate(entries):
-        placed |= _expanded(number, entry)
+        placed |= _expand_entry(number, entry)
+    # By place, so that a fault is told with the keys that lead to it.
     panels = _PANELS.validate_python(placed)
     for place, panel in panels.items():
         panel._place = place
@@ -66,44 +75,48 @@ class Figure(Model):
     width: Literal["one", "two"] = Field(
         "two", description="of the sheet, in columns of a journal: one (8.5 cm) or two (17 cm)"
     )
-    panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
+    panels: Annotated[list[Panel], PlainValidator(_read_panels)] = Field(
+        description="a list of panels"
+    )
 
     @property
     def workspaces(self) -> list[str]:
-        """Names of the workspaces that it draws without runs."""
+        """Return the names of the workspaces that are drawn without runs."""
         return sorted({name for each in self.panels if (name := getattr(each, "workspace", None))})
 
     @property
     def problems(self) -> list[str]:
-        """Names of the problems that it draws without runs."""
+        """Return the names of the problems that are drawn without runs."""
         return sorted({name for each in self.panels if (name := getattr(each, "problem", None))})
 
     @property
     def rerun(self) -> list[str]:
-        """Names of the experiments whose runs it repeats, to draw what no table keeps."""
+        """Return the names of the experiments whose runs are repeated, because no table keeps what
+        is drawn.
+        """
         return sorted({panel.experiment for panel in self.panels if panel.rerun})
 
     @property
     def claims(self) -> list[str]:
-        """Ids of the claims that it draws under all alternatives."""
+        """Return the ids of the claims that are drawn under all alternatives."""
         return sorted({claim for panel in self.panels if (claim := getattr(panel, "claim", None))})
 
     @property
     def code(self) -> list[str]:
-        """Parts of a study's code that it needs."""
+        """Return the parts of a study's code that its panels call."""
         own = any(panel.kind == "own" for panel in self.panels)
         calls = any(getattr(panel, "data", None) for panel in self.panels)
         return ["metrics", *(["functions"] if calls else []), *(["panels"] if own else [])]
 
     @property
     def names_any(self) -> bool:
-        """Whether its legend names what a function returns, which may be any method."""
+        """Tell whether its legend names values that a function returns, which may be any method."""
         return any(
             getattr(panel, "data", None) and getattr(panel, "hue", None) for panel in self.panels
         )
 
     def draws(self, table: str) -> bool:
-        """Whether it draws the numbers of a published table."""
+        """Tell whether it draws the numbers of a published table."""
         return any(
             table
             in (getattr(panel, "printed", None), *convert_to_list(getattr(panel, "published", [])))

@@ -1,4 +1,4 @@
-"""The jobs of the workflow that draw or set: figures, tables for print, and the page of a scale
+"""Jobs of the workflow that draw figures, set tables for print and write the page of a scale
 (`analysis.jobs`).
 """
 
@@ -18,8 +18,9 @@ from bezierplan.workspaces.kinds import modules_of
 
 @dataclass(frozen=True)
 class Latex(Job):
-    """A table as LaTeX, with its caption, which alone holds the title. One of the paper's form has
-    the printed numbers in the same cells.
+    """Write a table as LaTeX with its caption.
+
+    A table of the paper's form has the printed numbers in the same cells.
     """
 
     label: str
@@ -29,7 +30,7 @@ class Latex(Job):
     """How many columns name the rows of a table of the paper's form."""
 
     def run(self, input_files, output_files):
-        """Set the table."""
+        """Write the table as LaTeX."""
         import pandas as pd
 
         from bezierplan.analysis.numbers import comparison
@@ -41,45 +42,45 @@ class Latex(Job):
         )
         notes = [self.note] if self.note else []
         if beside:
-            table = latex.laid_over(table, *beside, self.heads)
+            table = latex.stack_numbers(table, *beside, self.heads)
             notes = [comparison.SIGNS_MEAN, *notes]
-        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
+        text = latex.format_table(table, self.caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)
 class FigureFiles(Job):
-    """A figure: pictures, exactly the data drawn in them, its caption and notes on the runs."""
+    """Draw a figure: pictures, the data drawn in them, and its caption with notes on the runs."""
 
     study: str
     caption: str
     columns: int
     width: str
-    """Of the sheet, a key of `style.WIDTHS`."""
+    """Width of the sheet, a key of `style.WIDTHS`."""
     panels: list[Panel]
     layout: Layout | None
-    """Of the paper's figure, if it is one of a paper."""
+    """The form of the paper's figure, if it is one of a paper."""
     labels: dict[str, str]
-    """Name -> how it is printed."""
+    """Name -> printed name."""
     looks: dict[str, str]
     """Method -> the name of its look."""
     workspaces: dict[str, dict[str, Any]]
-    """By name, those that are drawn without runs, as their files describe them."""
+    """Name -> description, for workspaces that are drawn without runs."""
     problems: Descriptions
-    """Those that are drawn without runs."""
+    """Problems that are drawn without runs."""
     repeats: dict[str, int]
-    """By experiment."""
+    """Experiment -> number of repeats."""
     chunks: dict[str, dict[str, Chunk]]
-    """Those whose runs the figure reruns, to draw what no table keeps, by experiment and method."""
+    """Experiment -> method -> chunk whose runs are repeated, to draw values that no table keeps."""
     unit: str
-    """That of lengths."""
+    """The unit of lengths."""
     folder: str
-    """That of the study, with its maps."""
+    """The study's folder, with its maps."""
     alternatives: list[dict[str, str]]
-    """What each single alternative is, in the order of its files: assumption, detail, value."""
+    """Assumption, detail and value of each single alternative, in the order of its files."""
 
     def list_modules(self):
-        """Kinds of panel and workspace, and planners that run again."""
+        """Return the modules of panels, of kinds of workspace and of planners that run again."""
         again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
         return [
             *self.code,
@@ -89,7 +90,7 @@ class FigureFiles(Job):
         ]
 
     def run(self, input_files, output_files):
-        """Draw the figure from its data, which are first written and read back."""
+        """Write the figure's data, read them back and draw them."""
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import by_reading
         from bezierplan.figures import sheet
@@ -121,7 +122,8 @@ class FigureFiles(Job):
         checks = [by_reading.read_checks(file) for file in input_files.alternatives]
         under = [*zip(self.alternatives, checks, strict=True)]
         sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
-        sheet.write_data(sheet.data(self.panels, sources), output_files.data)
+        # Read back, so that pictures show exactly the content of the file.
+        sheet.write_data(sheet.collect_data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
         )
@@ -132,19 +134,19 @@ class FigureFiles(Job):
 
 @dataclass(frozen=True)
 class Page(Job):
-    """The page of a scale."""
+    """Write the page of a scale, one file with all results."""
 
     page: PageJob
 
     def run(self, input_files, output_files):
-        """Write the page."""
+        """Write the page as one html file."""
         from bezierplan.analysis import study_code
         from bezierplan.figures.page import EVIDENCE, build, reader
         from bezierplan.running import inputs
 
         study_code.load_functions(self.code)
         folder = Path(input_files.verified).parent
-        page = build.page(
+        page = build.gather_content(
             self.page,
             folder,
             list(input_files.summary),
@@ -152,4 +154,4 @@ class Page(Job):
             reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.outcome else None,
             results=inputs.group_by_experiment(self.shows, input_files),
         )
-        Path(output_files.page).write_text(build.html(page, folder), encoding="utf-8")
+        Path(output_files.page).write_text(build.render_page(page, folder), encoding="utf-8")

@@ -33,11 +33,11 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """Return a table with the printed number above our range in each cell, or above ours without
-    one.
+def stack_numbers(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
+    """Return a table with the printed number above our range in each cell.
 
-    numbers: its comparison, all text. heads: how many columns name the rows.
+    Where there is no range, our number stands below. numbers: the table's comparison, all text.
+    heads: how many columns name the rows.
     """
     cells = ours.iloc[:, heads:].to_numpy()
     over = np.where(cells == "", "-\n", "-\n" + cells)
@@ -47,13 +47,14 @@ def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataF
     return ours.iloc[:, :heads].join(pd.DataFrame(over, ours.index, ours.columns[heads:]))
 
 
-def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str] = ()) -> str:
-    """A table with rules as of a book: numbers on the right, and columns whose names begin alike
-    below a common head. table: all text, as in its csv file. label: what `\\ref` takes. notes: what
-    stands below it.
+def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str] = ()) -> str:
+    """Return a table as LaTeX, with numbers on the right, and a common head above columns whose
+    names begin alike.
+
+    table: all text, as in its csv file. label: for `\\ref`. notes: sentences below the table.
 
     >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
-    >>> print(document(lengths, "Lengths in %", "tab:x"))
+    >>> print(format_table(lengths, "Lengths in %", "tab:x"))
     % Needs \\usepackage{booktabs,graphicx}.
     \\begin{table}[htbp]
       \\centering
@@ -72,29 +73,29 @@ def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str]
     sides = "".join(
         "r" if _is_number(table[column].str.split("\n").str[0]) else "l" for column in table
     )
-    cells = map(_row, table.itertuples(index=False))
-    rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
+    cells = map(_format_row, table.itertuples(index=False))
+    rows = ["\\toprule", *_format_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
     body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in rows), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
-    body += [f"\\par\\footnotesize {escaped(note)}." for note in notes]
+    body += [f"\\par\\footnotesize {escape_signs(note)}." for note in notes]
     head = [
         "\\centering",
-        f"\\caption{{{escaped(caption)}}}",
+        f"\\caption{{{escape_signs(caption)}}}",
         f"\\label{{{label}}}",
     ]
     lines = ["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""]
     return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *lines])
 
 
-def escaped(text: str) -> str:
-    """Text in which no sign is a command."""
+def escape_signs(text: str) -> str:
+    """Return text in which LaTeX reads no sign as a command."""
     return text.translate(str.maketrans(_SIGNS))
 
 
-def _row(cells: Iterable[str]) -> str:
-    """Cells of a row; one of two lines is a stack."""
-    texts = map(escaped, cells)
+def _format_row(cells: Iterable[str]) -> str:
+    """Return a row of LaTeX from texts, in which a text of two lines becomes a stack."""
+    texts = map(escape_signs, cells)
     stacks = [
         "\\shortstack[r]{" + text.replace("\n", " \\\\ ") + "}" if "\n" in text else text
         for text in texts
@@ -102,26 +103,26 @@ def _row(cells: Iterable[str]) -> str:
     return " & ".join(stacks) + " \\\\"
 
 
-def _heads(names: list[str]) -> list[str]:
-    """The rows of heads: one, or two if neighbouring columns share the first part of their
+def _format_heads(names: list[str]) -> list[str]:
+    """Return the rows of heads: one, or two if neighbouring columns share the first part of their
     names.
     """
     parts = [name.split(_LEVEL, 1) for name in names]
     if all(part[0] != after[0] for part, after in itertools.pairwise(parts)):
-        return [_row(names)]
+        return [_format_row(names)]
     above, rules, below = [], "", []
     for first, group in itertools.groupby(parts, key=lambda part: part[0]):
         shown = [part[-1] for part in group]
         if shown == [first]:
             above.append("")
         else:
-            above.append(f"\\multicolumn{{{len(shown)}}}{{c}}{{{escaped(first)}}}")
+            above.append(f"\\multicolumn{{{len(shown)}}}{{c}}{{{escape_signs(first)}}}")
             rules += f"\\cmidrule(lr){{{len(below) + 1}-{len(below) + len(shown)}}}"
         below += shown
-    return [" & ".join(above) + " \\\\", rules, _row(below)]
+    return [" & ".join(above) + " \\\\", rules, _format_row(below)]
 
 
 def _is_number(column: pd.Series) -> bool:
-    """Whether a column of text holds numbers, and empty cells or dashes at most."""
+    """Tell whether a column of text holds numbers, and empty cells or dashes at most."""
     given = column[~column.isin(["", "-"])]
     return bool(len(given)) and bool(pd.to_numeric(given, errors="coerce").notna().all())

@@ -1,5 +1,5 @@
-"""How a paper prints a table or figure, as far as its text says: the words and colours that ours
-takes from it, and what tests compare with ours.
+"""How a paper prints a table or figure, as far as its text says so. Ours take words and colours
+from it, and tests compare the rest.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Words = Annotated[
 
 
 class Layout(Model):
-    """A table or figure in print."""
+    """The form of a table or figure in print."""
 
     says: Line = Field(description="what the text says of it, in words of one's own")
     series: Words = Field(
@@ -54,14 +54,18 @@ class Layout(Model):
 
     @property
     def names(self) -> dict[Any, str]:
-        """Printed names, in their order. A blank one is a space: pandas would name an empty one."""
+        """Return printed names in their order.
+
+        A blank one becomes a space, because pandas would name an empty one.
+        """
         parts = (self.heads, self.rows, self.words, self.series)
         every = [part if isinstance(part, dict) else dict(zip(part, part)) for part in parts]
         return {name: printed or " " for part in every for name, printed in part.items()}
 
-    def dress(self, axes: Axes, number: int) -> None:
-        """Give the axes and the parts of the panel of a number the words and colours of print;
-        units stay those of what is drawn.
+    def apply_to(self, axes: Axes, number: int) -> None:
+        """Give a panel's axes and artists the words and colours of print.
+
+        number: the panel's, from 0. Units stay those of the drawn data.
         """
         for name, given in self.axes.items():
             own = getattr(axes, f"get_{name}label")()

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from bezierplan.figures import style
 from bezierplan.figures.layout import Layout
-from bezierplan.figures.panels import Note, Panel, Sources, kind_module
+from bezierplan.figures.panels import Note, Panel, Sources, load_kind
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # A panel narrower than this, in inches, has smaller marks and fewer ticks.
@@ -33,13 +33,12 @@ _ROUNDS = 2
 
 
 class FigureScene(NamedTuple):
-    """What drawings need in addition to the table of what is drawn.
+    """Everything that drawings need beside the table of data.
 
     problems: by experiment, then by name. workspaces, places: workspaces and problems that are
-    drawn without runs, by name. labels:
-    how names are printed. unit: name of the study's unit of length. looks: method -> the name of
-    its look (`style.LOOKS`). functions: those of the study that draw, by name. layout: of the
-    paper's figure.
+    drawn without runs, by name. labels: name -> printed name. unit: the study's unit of length.
+    looks: method -> the name of its look (`style.LOOKS`). functions: the study's functions that
+    draw, by name. layout: the form of the paper's figure.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -52,40 +51,44 @@ class FigureScene(NamedTuple):
     places: Mapping[str, Problem] = MappingProxyType({})
 
 
-def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
-    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the
-    first column. Raises ValueError for options or runs that a kind cannot draw.
+def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
+    """Return the rows of all panels in one table, whose first column is the panel number (0, 1,
+    ...).
+
+    Raises ValueError for options or runs that a kind of panel cannot draw.
     """
     frames = []
     for number, panel in enumerate(panels):
-        frame = kind_module(panel.kind).data(panel.source(sources), panel)
+        frame = load_kind(panel.kind).data(panel.source(sources), panel)
         frame.insert(0, "panel", number)
         frames.append(frame)
     return pd.concat(frames, ignore_index=True)
 
 
 def write_data(frame: pd.DataFrame, file: str) -> None:
-    """Write what is drawn as csv."""
+    """Write the table of data as csv."""
     frame.to_csv(file, index=False, lineterminator="\n")
 
 
 def read_data(file: str) -> pd.DataFrame:
-    """What `write_data` wrote, every number to its last bit."""
+    """Read a file of `write_data`, every number to its last bit."""
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
 def draw(
     panels: list[Panel], frame: pd.DataFrame, scene: FigureScene, columns: int, width: str = "two"
 ) -> Figure:
-    """The figure of a table made by `data`. Its label has notes: for each panel the run that
-    it shows, and what it counts; in a second line, if anything can be said of it, what is plain to
-    the eye.
+    """Draw the figure of a table that `collect_data` made.
 
-    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its
-    content. columns: panels per row. width: of the sheet, a key of `style.WIDTHS`.
+    The figure's label has notes: which runs each panel shows and counts; in a second line, things
+    that are plain to the eye.
+    frame: preferably read back from the csv file (`read_data`), so that the figure shows exactly
+    its content. columns: panels per row. width: a key of `style.WIDTHS`.
     """
     rows, inches = math.ceil(len(panels) / columns), style.WIDTHS[width]
-    scene = scene._replace(labels={name: _plain(text) for name, text in scene.labels.items()})
+    scene = scene._replace(
+        labels={name: _escape_dollars(text) for name, text in scene.labels.items()}
+    )
     letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]]
     if len(panels) == 1:
         letters = [""]
@@ -96,16 +99,16 @@ def draw(
         FigureCanvasAgg(figure)
         notes = []
         for number, (letter, panel) in enumerate(zip(letters, panels)):
-            kind, rows_of_panel = kind_module(panel.kind), frame[frame["panel"] == number]
+            kind, rows_of_panel = load_kind(panel.kind), frame[frame["panel"] == number]
             projection = getattr(kind, "PROJECTION", None)
             axes = figure.add_subplot(rows, columns, number + 1, projection=projection)
             notes.append(kind.draw(axes, rows_of_panel, scene, panel))
             if scene.layout:
-                scene.layout.dress(axes, number)
+                scene.layout.apply_to(axes, number)
             _fit(
                 axes,
                 letter
-                + _heading(
+                + _write_heading(
                     panel, rows_of_panel if several else rows_of_panel[[]], scene, notes[-1]
                 ),
                 inches / columns,
@@ -113,8 +116,8 @@ def draw(
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
-    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
-    captions[0] = " ".join(filter(None, [captions[0], _same_paths(letters, frame)]))
+    captions = [_join_clauses(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
+    captions[0] = " ".join(filter(None, [captions[0], _describe_equal_paths(letters, frame)]))
     figure.set_label("\n".join(filter(None, captions)))
     return figure
 
@@ -122,35 +125,34 @@ def draw(
 _PARTS = "caption", "glance"
 
 
-def _plain(text: str) -> str:
-    """Text that matplotlib prints as it stands: a dollar begins no formula."""
+def _escape_dollars(text: str) -> str:
+    """Return text in which a dollar begins no formula of matplotlib."""
     return text.replace("$", r"\$")
 
 
-def _heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
-    """A panel's title with the method whose runs it shows, if there is only one and it is not that
-    of all panels, and a few words below it.
+def _write_heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
+    """Return a panel's title with its method and the few words of its note.
+
+    The method is named only if the panel has one and other panels have others.
     """
     methods = frame["method"].dropna().unique() if "method" in frame else []
     method = scene.labels.get(methods[0], methods[0]) if len(methods) == 1 else ""
-    title = ", ".join(filter(None, [_plain(panel.title or ""), method]))
+    title = ", ".join(filter(None, [_escape_dollars(panel.title or ""), method]))
     return "\n".join(filter(None, [title, note.heading]))
 
 
 def _fit(axes: Axes, heading: str, width: float) -> None:
-    """Give a panel its heading and its shape in a place of a width in inches, with all texts broken
-    to fit.
-    """
+    """Give a panel its heading and its shape, with texts broken to fit a width in inches."""
     room = width - _BESIDE
-    axes.set_title(_in_lines(heading, room))
+    axes.set_title(_break_lines(heading, room))
     axes.set_anchor("N")
     if axes.name == "3d":
         return
     if axes.get_aspect() == "auto" and axes.get_box_aspect() is None:
         axes.set_box_aspect(style.PANEL_HEIGHT)
     high = room * (axes.get_box_aspect() or 1)
-    axes.set_xlabel(_in_lines(axes.get_xlabel(), room))
-    axes.set_ylabel(_in_lines(axes.get_ylabel(), high))
+    axes.set_xlabel(_break_lines(axes.get_xlabel(), room))
+    axes.set_ylabel(_break_lines(axes.get_ylabel(), high))
     if width < _NARROW_PANEL:
         for line in axes.get_lines():
             line.set_markersize(_SMALLER * line.get_markersize())
@@ -158,16 +160,14 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
             axes.locator_params(nbins=4, integer=True)
 
 
-def _in_lines(text: str, room: float) -> str:
-    """Text in lines that fit a width in inches."""
+def _break_lines(text: str, room: float) -> str:
+    """Break text into lines that fit a width in inches."""
     letters = max(10, int(room / _LETTER))
     return "\n".join(textwrap.fill(line, letters) for line in text.splitlines())
 
 
 def _name_axes_once(panels: list[Axes], columns: int) -> None:
-    """Keep the names of axes only at the left and lower edge of the sheet if all panels share
-    them.
-    """
+    """Remove names of axes inside the sheet if all panels share them."""
     if len({axes.get_ylabel() for axes in panels}) == 1:
         for number, axes in enumerate(panels):
             if number % columns:
@@ -178,8 +178,10 @@ def _name_axes_once(panels: list[Axes], columns: int) -> None:
 
 
 def _draw_legend(figure: Figure, names: Mapping[Any, str]) -> None:
-    """One legend for all panels below them, with each label once, in as few rows as the width
-    allows: first what print names, in its order, and last what is said about all others.
+    """Draw one legend below all panels, with each label once, in as few rows as the width allows.
+
+    Entries that the paper's figure names come first, in its order; the entries of `style.LAST` come
+    last.
     """
     found = {}
     for axes in figure.axes:
@@ -198,7 +200,7 @@ def _draw_legend(figure: Figure, names: Mapping[Any, str]) -> None:
 
 
 def _fit_height(figure: Figure) -> None:
-    """Cut what is empty above the panels, and between them and the legend."""
+    """Cut empty room above the panels, and between them and the legend."""
     for _ in range(_ROUNDS):
         figure.draw_without_rendering()
         boxes = [axes.get_tightbbox() for axes in figure.axes]
@@ -206,11 +208,12 @@ def _fit_height(figure: Figure) -> None:
         empty = figure.bbox.height - max(box.y1 for box in boxes) + min(box.y0 for box in boxes)
         figure.set_figheight(figure.get_figheight() - (empty - floor) / figure.dpi + 0.1)
     figure.draw_without_rendering()
+    # Laid out once: each of the three files would do it again.
     figure.set_layout_engine(None)
 
 
-def _caption(letters: list[str], clauses: list[str]) -> str:
-    """What the panels say, each with its letter, those that say the same together."""
+def _join_clauses(letters: list[str], clauses: list[str]) -> str:
+    """Return what the panels say, each with its letter; panels that say the same share one."""
     same = {
         clause: [letter.strip() for letter, own in zip(letters, clauses) if own == clause]
         for clause in filter(None, clauses)
@@ -218,8 +221,8 @@ def _caption(letters: list[str], clauses: list[str]) -> str:
     return " ".join(f"{', '.join(own)} {clause}.".lstrip() for clause, own in same.items())
 
 
-def _same_paths(letters: list[str], frame: pd.DataFrame) -> str:
-    """Which panels show the same path."""
+def _describe_equal_paths(letters: list[str], frame: pd.DataFrame) -> str:
+    """Say which panels show the same path."""
     if "part" not in frame:
         return ""
     panels = frame[frame["part"] == "path"].groupby("panel")
@@ -233,10 +236,12 @@ def _same_paths(letters: list[str], frame: pd.DataFrame) -> str:
 
 
 def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = None) -> None:
-    """Save a figure as svg and, if they are asked for, as png of 300 dots per inch and as pdf;
-    equal drawings give equal bytes at any time. Each picture has its caption in its metadata.
+    """Save a figure as svg and, if they are asked for, as png (300 dots per inch) and pdf.
+
+    Equal drawings give equal bytes at any time. Each picture has its caption in its metadata.
     """
     caption = figure.get_label() or None
+    # A date or a version would make equal drawings differ in their bytes.
     kinds = {
         "svg": (svg, {"Date": None, "Creator": None, "Description": caption}),
         "png": (png, {"Software": None} | ({"Description": caption} if caption else {})),

@@ -57,7 +57,7 @@ SETTINGS = {
 
 
 def mark(shape: str, size: float, colour: str, **more: Any) -> dict[str, Any]:
-    """The style of marks without a line; more: of matplotlib's properties."""
+    """Return the style of marks without a line; more: properties of matplotlib."""
     return {"color": colour, "linestyle": "", "marker": shape, "markersize": size, **more}
 
 
@@ -141,9 +141,10 @@ _LEAST_SPAN = 0.003
 _LINEAR = 1e-3
 
 
-def ground(share: float) -> str:
-    """The colour of terrain at a share of the range from the lowest to the highest: pale, so that
-    lines stand out.
+def choose_ground_colour(share: float) -> str:
+    """Return the colour of terrain, pale so that lines stand out.
+
+    share: the height, from 0 (lowest) to 1 (highest).
     """
     import matplotlib as mpl
 
@@ -151,17 +152,17 @@ def ground(share: float) -> str:
 
 
 def interval_band(colour: str) -> dict[str, Any]:
-    """The style of a line's interval: pale in the line's colour, with an edge that stays visible
-    where bands overlap.
+    """Return the style of a line's interval: pale, with an edge that stays visible where bands
+    overlap.
     """
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
-def looks_of(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
-    """Method -> the name of its look in every figure: the declared one, else its planner's, else
-    one that few other methods have.
+def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
+    """Return the name of the look of each method in all figures.
 
-    planners: method -> planner.
+    It is the declared one, else its planner's, else one that few other methods have. planners:
+    method -> planner. own: method -> declared look.
     """
     looks = {
         method: own.get(method) or LOOK_OF_PLANNER.get(planner)
@@ -174,14 +175,14 @@ def looks_of(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, s
     return {method: str(look) for method, look in looks.items()}
 
 
-def lines(
+def choose_line_styles(
     values: Sequence[Any], looks: Mapping[str, str] = MappingProxyType({})
 ) -> list[dict[str, Any]]:
-    """Styles of lines for values side by side, one each: a colour scale for numbers; for methods
-    their looks; else looks in order.
+    """Return a style of line for each of some values side by side.
 
-    looks: method -> the name of its look. A look that another of the values has already is replaced
-    by the next one that is free.
+    Numbers get colours of a scale, methods their looks, and other values looks in order. looks:
+    method -> the name of its look. If another value has a look already, the next free one replaces
+    it.
     """
     import matplotlib as mpl
 
@@ -207,20 +208,21 @@ def lines(
     ]
 
 
-def groups(
+def list_groups(
     frame: pd.DataFrame, column: str, where: dict[str, Any], scene: Any
 ) -> list[tuple[Any, pd.DataFrame, dict[str, Any]]]:
-    """The values of a column in the order in which a panel shows them, each with its rows and its
-    style, printed name included.
+    """Return the values of a column in the order of a panel, each with its rows and its style.
+
+    The style has the printed name of the value as its label.
     """
-    values = in_order(frame[column], where)
+    values = list_in_order(frame[column], where)
     return [
         (
             value,
             frame[frame[column] == value],
             look | {"label": naming.format_value(value, column, scene.labels)},
         )
-        for value, look in zip(values, lines(values, scene.looks))
+        for value, look in zip(values, choose_line_styles(values, scene.looks))
     ]
 
 
@@ -232,9 +234,11 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **mor
             axes.plot(own["x"], own["y"], **more | look)
 
 
-def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
-    """Scale an axis of measured values, so that it shows at least `_LEAST_SPAN` of them, with plain
-    numbers; lengths of time with their unit.
+def scale_axis(axis: Any, scale: str = "linear", unit: str = "") -> None:
+    """Scale an axis of measured values and print plain numbers along it, lengths of time with their
+    unit.
+
+    The axis spans at least `_LEAST_SPAN` of its values.
     """
     from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter
 
@@ -247,6 +251,7 @@ def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
         middle = (low + high) / 2
         getattr(axis.axes, f"set_{name}lim")(middle - least / 2, middle + least / 2)
     if scale == "log":
+        # Only few decades leave room for ticks within them.
         decades = np.log10(high / low)
         axis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)))
         axis.set_minor_formatter(NullFormatter())
@@ -257,7 +262,7 @@ def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
 
 
 def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
-    """Name the axis of x and the places 0, 1, ... along it, in slanted words so that none touch."""
+    """Name the x axis and the places 0, 1, ... along it; words are slanted so that none touch."""
     slant = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
     axes.set_xticks(range(len(names)), names, **slant if max(map(len, names)) > 3 else {})
     axes.tick_params(axis="x", length=0)
@@ -265,9 +270,9 @@ def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
     axes.grid(visible=True, axis="y")
 
 
-def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
-    """The distinct values of a column: those in a panel's `where`, in its order, then the others,
-    sorted.
+def list_in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
+    """Return the distinct values of a column: first those that `where` lists, in its order, then
+    the others, sorted.
     """
     first = where.get(values.name)
     listed = first if isinstance(first, list) else []

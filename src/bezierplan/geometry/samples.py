@@ -23,7 +23,7 @@ class Samples(NamedTuple):
     x, y: in that unit.
     heading: direction of travel, in radians from the x-axis.
     curvature: signed, positive to the left, in 1/unit; 0 where the curve stands still or turns on
-        the spot.
+    the spot.
     """
 
     distance: np.ndarray

@@ -6,7 +6,13 @@ import csv
 import hashlib
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.figures.caption import MOST_FINDINGS, Caption, CaptionClaim, tell, tell_both
+from bezierplan.figures.caption import (
+    MOST_FINDINGS,
+    Caption,
+    CaptionClaim,
+    describe_verdict,
+    describe_verdicts,
+)
 from bezierplan.machine.digest import compute_content_digest
 from bezierplan.places import STUDIES, TREE
 from bezierplan.study.definition import Study
@@ -55,7 +61,7 @@ def _is_untestable(claim: Claim) -> bool:
 def _tell(study: Study, claim: Claim, outcome: dict[str, str] | None, scale: str) -> str:
     """The verdict in words, as far as it is known before the runs."""
     if _is_untestable(claim):
-        return tell("untestable", 0)
+        return describe_verdict("untestable", 0)
     if not outcome:
         return ""
     verdict, own = outcome["verdict"], outcome["verdict_papers_size"]
@@ -63,7 +69,7 @@ def _tell(study: Study, claim: Claim, outcome: dict[str, str] | None, scale: str
     # Some functions look at no run; what they say does not depend on their number.
     if verdict == own and all(check.test == "function" for check in claim.checks):
         many = 0
-    return tell_both(verdict, many, own if scale == "full" else "", few)
+    return describe_verdicts(verdict, many, own if scale == "full" else "", few)
 
 
 def _count_runs(study: Study, claim: Claim, scale: str) -> int:

@@ -176,7 +176,9 @@ def find_results(study: Study, artefact: str, scale: str) -> Shows:
 
 def choose_looks(study: Study) -> dict[str, str]:
     """Return method -> the name of its look in each figure."""
-    return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
+    return style.choose_looks(
+        {method: study.planner(method) for method in study.methods}, study.looks
+    )
 
 
 def build_labels(study: Study, artefact: str) -> dict[str, str]:

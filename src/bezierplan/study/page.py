@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import EVIDENCE, files, in_printed_order, read_answers
+from bezierplan.figures.page import EVIDENCE, list_files, read_answers, sort_as_printed
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -29,7 +29,7 @@ def list_artefacts(study: Study, scale: str, root: str = RESULTS) -> list[str]:
     root: the folder of all scales, with a slash at its end.
     """
     folder = Path(f"{root}{scale}/{study.key}/{BEYOND}")
-    return in_printed_order(
+    return sort_as_printed(
         [
             *study.list_names(PAPER),
             *(
@@ -68,7 +68,7 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     ]
     return Page(
         PageJob(scale, shown, known),
-        sources=[*files(), *(EVIDENCE if known else [])],
+        sources=[*list_files(), *(EVIDENCE if known else [])],
         shows=find_results(studies, scale, root),
         code=[module for own in studies.values() for module in own.code_for("metrics")],
     )

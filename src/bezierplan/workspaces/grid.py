@@ -30,10 +30,10 @@ class Grid:
     unit: name of the unit of length.
     origin: x, y of the lower left corner, in units.
     shapes: the shapes from which the cells were drawn, if any: circles, which only pictures show,
-        or polygons, which are then the obstacles of the certified check and of the exact bounds
-        (`raster`).
+    or polygons, which are then the obstacles of the certified check and of the exact bounds
+    (`raster`).
     heights: (rows, columns) height of the ground in each cell, in units, where it is not flat; only
-        some planners use them.
+    some planners use them.
     growth: the grid before its occupied cells grew by a robot's radius, if they did.
 
     The arrays are read-only.

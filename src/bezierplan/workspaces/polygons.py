@@ -19,7 +19,7 @@ class Polygons:
 
     bounds: lowest and highest x, lowest and highest y, in units.
     obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2)
-        in units, not closed.
+    in units, not closed.
     unit: name of the unit of length.
     growth: the polygons before they grew by a robot's radius, if they did.
 

@@ -1,5 +1,5 @@
-"""One file that shows all results of a scale: what is read (`reader`, `runs`), what is said
-(`answer`, `why`, `charts`), and templates that show it (`build`).
+"""One file that shows all results of a scale. `reader` and `runs` read them, `answer` and `charts`
+prepare words and drawings, and `build` fills templates.
 """
 
 import csv
@@ -18,8 +18,8 @@ EVIDENCE = [
 """What many runs say of all studies: tables of `reader.Evidence`."""
 
 
-def files() -> list[str]:
-    """The templates, styles and scripts of the page, whose content decides how it looks."""
+def list_files() -> list[str]:
+    """List the templates, styles and scripts of the page, whose content decides how it looks."""
     return sorted(
         str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir()
     )
@@ -34,11 +34,12 @@ def read_answers() -> dict[str, tuple[str, str]]:
         return {row["study"]: (row["title"], row["text"]) for row in csv.DictReader(rows)}
 
 
-def in_printed_order(names: Iterable[str]) -> list[str]:
-    """Names of tables and figures with the numbered ones first, tables before figures, each by its
-    number; the others as they were.
+def sort_as_printed(names: Iterable[str]) -> list[str]:
+    """Return names of tables and figures with the numbered ones first, tables before figures.
 
-    >>> in_printed_order(["work", "figure11", "figure2", "table6", "table4"])
+    Numbered ones are sorted by number; the others keep their order.
+
+    >>> sort_as_printed(["work", "figure11", "figure2", "table6", "table4"])
     ['table4', 'table6', 'figure2', 'figure11', 'work']
     """
     numbered = {

@@ -1,4 +1,4 @@
-"""Addresses of places on the page: what follows # in a link."""
+"""Addresses of places on the page, the part of a link after #."""
 
 import re
 from collections import Counter
@@ -6,24 +6,26 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 
-def address(*parts: Any) -> str:
-    """A path of names; what an address cannot hold, such as a space, becomes _."""
+def build_address(*parts: Any) -> str:
+    """Return a path of names, with _ for each sign that an address cannot hold, such as a space."""
     return "/".join(
         re.sub(r"[^\w.+~-]", "_", f"{part:g}" if isinstance(part, float) else str(part))
         for part in parts
     )
 
 
-def of_cells(
+def build_cell_addresses(
     table: str, cells: Sequence[Mapping[str, Any]], primary: Mapping[str, Any]
 ) -> list[str]:
-    """Addresses of the cells of a table, each with its key columns, then `metric` and `statistic`.
+    """Return the addresses of the cells of a table, each with its key columns, `metric` and
+    `statistic`.
 
-    A key is left out where it has its value under the default reading, and for a column with
-    one value only, unless two cells would then have the same address: these name all their keys.
+    A key is left out if it has its value under the default reading, or if its column has one value
+    only. If two cells would then have the same address, these two name all their keys. cells: with
+    these columns. primary: key -> value under the default reading.
 
     >>> mean = {"method": "x", "metric": "length", "statistic": "mean"}
-    >>> of_cells("one/table1", [{"map": "a"} | mean, {"map": "b"} | mean], {"map": "a"})
+    >>> build_cell_addresses("one/table1", [{"map": "a"} | mean, {"map": "b"} | mean], {"map": "a"})
     ['one/table1/length/mean', 'one/table1/b/length/mean']
     """
     single = {
@@ -39,9 +41,9 @@ def of_cells(
         ]
         for cell in cells
     ]
-    short = [f"{table}/{address(*values)}" for values in told]
+    short = [f"{table}/{build_address(*values)}" for values in told]
     count = Counter(short)
     return [
-        name if count[name] == 1 else f"{table}/{address(*cell.values())}"
+        name if count[name] == 1 else f"{table}/{build_address(*cell.values())}"
         for name, cell in zip(short, cells, strict=True)
     ]

@@ -1,4 +1,4 @@
-"""What the page says first: the outcome, how many runs its results rest on, what fails, and what to
+"""The page's first words: the outcome, the number of runs behind it, failures, and which method to
 use on a map of one's own.
 """
 
@@ -8,13 +8,13 @@ from bezierplan.analysis import words
 from bezierplan.figures.page.reader import Row
 
 
-def about_scale(scale: str, repeats: list[list[int]], evidence: bool) -> str:
-    """How many runs the results of a scale rest on, and where the evidence of many runs is.
+def describe_scale(scale: str, repeats: list[list[int]], evidence: bool) -> str:
+    """Say how many runs the results of a scale rest on, and where the evidence of many runs is.
 
-    repeats: of each study, the least and the largest number of runs of a method under a condition.
-    evidence: whether positions and verdicts are those of many runs.
+    repeats: by study, the least and the largest number of runs of a method under a condition.
+    evidence: tells if positions and verdicts are those of many runs.
     """
-    runs = _span([number for own in repeats for number in own])
+    runs = _format_span([number for own in repeats for number in own])
     first = {
         "smoke": "a small subset, which shows that everything works",
         "full": "as many runs as the papers report",
@@ -30,26 +30,27 @@ def about_scale(scale: str, repeats: list[list[int]], evidence: bool) -> str:
     )
 
 
-def _span(numbers: list[int]) -> str:
+def _format_span(numbers: list[int]) -> str:
+    """Return the range of numbers, such as "10 to 1,000", or the one number."""
     low, high = min(numbers, default=0), max(numbers, default=0)
     return f"{low:,}" if low == high else f"{low:,} to {high:,}"
 
 
-def sentences_of_paper(study: SimpleNamespace) -> list[Row]:
-    """Claims of the paper, without our own findings."""
+def select_claims_of_paper(study: SimpleNamespace) -> list[Row]:
+    """Return the claims of the paper, without our own findings."""
     return [claim for claim in study.claims if not claim["finding"]]
 
 
-def group_of(claim: Row) -> str:
-    """What the verdict of a claim counts as."""
+def find_group(claim: Row) -> str:
+    """Return the group in which the verdict of a claim counts."""
     return words.WORDS.get(claim["verdict"], words.OTHER).group
 
 
-def failing(study: SimpleNamespace) -> list[Row]:
-    """Sentences of a paper that fail, also those that do by a criterion of ours."""
-    return [claim for claim in sentences_of_paper(study) if group_of(claim) == "fail"]
+def select_failing(study: SimpleNamespace) -> list[Row]:
+    """Return the claims of a paper that fail, also those that do by a criterion of ours."""
+    return [claim for claim in select_claims_of_paper(study) if find_group(claim) == "fail"]
 
 
-def counted(study: SimpleNamespace) -> list[Row]:
-    """The numbers of a study that count in the outcome."""
+def select_counted(study: SimpleNamespace) -> list[Row]:
+    """Return the numbers of a study that count in the outcome."""
     return [cell for table in study.tables for cell in table["numbers"] if cell["counted"]]

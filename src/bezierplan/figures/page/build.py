@@ -1,4 +1,6 @@
-"""The page of a scale as one file: what the tables say, in templates, with style and scripts."""
+"""The page of a scale as one file: templates are filled with the content of tables and carry styles
+and scripts.
+"""
 
 import base64
 import hashlib
@@ -33,7 +35,7 @@ MARKS = {
 _AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
-def page(
+def gather_content(
     job: PageJob,
     folder: Path,
     summary: list[str] | None = None,
@@ -41,30 +43,30 @@ def page(
     evidence: reader.Evidence | None = None,
     results: Mapping[str, Files] = MappingProxyType({}),
 ) -> SimpleNamespace:
-    """What the templates show. data: what the viewer reads.
+    """Return the content of the templates, with `data` for the viewer's script.
 
-    folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    methods.csv, if the scale has them. proof: the file of the check of the runs
-    shown (`running.recheck`), if there is one. evidence: as for `reader.studies`. results: of the
-    experiments whose runs the viewer shows, by study/experiment.
+    folder: the scale's results. summary: the files numbers.csv, claims.csv and methods.csv of all
+    studies, if the scale has them. proof: the file of the check of the runs shown
+    (`running.recheck`), if there is one. evidence: see `reader.read_study_results`. results: by
+    study/experiment, the files of the experiments whose runs the viewer shows.
     """
     tables = [reader.read(file) for file in summary] if summary else None
-    studies = reader.studies(job, folder, tables, evidence)
+    studies = reader.read_study_results(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
     for place, files in results.items():
         key, _, name = place.partition("/")
-        shown, found = runs.chosen(key, name, studies[key].job.experiments[name], files)
+        shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
         studies[key].shown += shown
         for kind, own in found.items():
             data[kind] |= own
-    _share_workspaces(data)
+    _merge_workspaces(data)
     repeats = [own.repeats for own in job.studies.values()]
-    verified = _verified(Path(proof)) if proof else None
+    verified = _read_check(Path(proof)) if proof else None
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.about_scale(job.scale, repeats, bool(evidence)),
+        about_scale=answer.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else describe_version(),
-        headline=_headline(_replace(tables, evidence, job.outcome), job.studies),
+        headline=_write_headline(_replace(tables, evidence, job.outcome), job.studies),
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -81,26 +83,27 @@ def page(
 def _replace(
     tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, studies: list[str]
 ) -> list[pd.DataFrame] | None:
-    """Return numbers, claims and methods of all studies, those of the evidence in place of the
-    scale's own for some studies.
+    """Return numbers, claims and methods of all studies, with the evidence in place of the scale's
+    own for some studies.
     """
     if not evidence:
         return tables
-    many = evidence.of(studies)[: len(tables or evidence)]
+    many = evidence.select(studies)[: len(tables or evidence)]
     own = [table[~table["study"].isin(studies)] for table in tables or []]
     return [pd.concat(both, ignore_index=True) for both in zip(many, own)] if own else [*many]
 
 
-def _verified(file: Path) -> dict[str, Any]:
-    """What the page says of the check: with the SHA-256 of its file, which lists that of every
-    other file behind the page.
+def _read_check(file: Path) -> dict[str, Any]:
+    """Read the file of the check, and add the SHA-256 of that file, which lists all other files
+    behind the page.
     """
     content = file.read_bytes()
     return json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
 
 
-def _share_workspaces(data: dict[str, dict]) -> None:
-    """Leave out workspaces that equal an earlier one, which their problems then name."""
+def _merge_workspaces(data: dict[str, dict]) -> None:
+    """Remove workspaces that equal an earlier one, and let their problems name that one."""
+    # Experiments on the same map would each bring its shapes.
     first: dict[str, str] = {}
     names = {
         name: first.setdefault(json.dumps(shapes), name)
@@ -111,8 +114,8 @@ def _share_workspaces(data: dict[str, dict]) -> None:
         problem["workspace"] = names[problem["workspace"]]
 
 
-def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
-    """Return the sentences on numbers and claims of the studies of the page, if there are any."""
+def _write_headline(tables: list | None, studies: Iterable[str]) -> list[str]:
+    """Return the sentences on numbers and claims of the page's studies, if there are any."""
     if not tables:
         return []
     numbers, claims = (table[table["study"].isin([*studies])] for table in tables[:2])
@@ -120,19 +123,24 @@ def _headline(tables: list | None, studies: Iterable[str]) -> list[str]:
     return [*filter(None, said)]
 
 
-def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
-    """The page, or what another template shows of it, as one html text that needs no other file.
+def render_page(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
+    """Return the page, or what another template shows, as html that needs no other file.
+
     folder: where the pictures of its figures are.
     """
-    text = environment(page, folder).get_template(template).render(page=page)
+    text = build_environment(page, folder).get_template(template).render(page=page)
     return "".join(
         part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
         for part in _AS_WRITTEN.split(text)
     )
 
 
-def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
-    """What templates can use, those of this folder and of more folders: a `jinja2.Environment`."""
+def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
+    """Return a `jinja2.Environment` with all that templates can use.
+
+    Templates are those of this folder and of more folders. folder: where the pictures of figures
+    are.
+    """
     import jinja2
     from markupsafe import Markup
 
@@ -146,28 +154,28 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     )
     environment.filters |= {
         "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
-        "short": short,
+        "short": format_value,
         "heading": naming.format_heading,
         "amount": naming.format_amount,
-        "counts": counts,
-        "positions": positions,
+        "counts": count_verdicts,
+        "positions": describe_positions,
         "range_text": comparison.format_range,
-        "packed": packed,
-        "failing": answer.failing,
-        "labelled": labelled,
+        "packed": pack,
+        "failing": answer.select_failing,
+        "labelled": label_keys,
     }
     environment.globals |= {
-        "address": addresses.address,
+        "address": addresses.build_address,
         "answer": answer,
         "baseline": methods.BASELINE,
         "charts": charts,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
-        "grid": grid,
+        "grid": build_grid,
         "marks": MARKS,
         "root": "",  # before the paths of files of results
         "meaning": lambda metric: describe_metric(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
-        "size": size,
+        "size": read_size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
         "verdicts_on": words.select_words,
         "words": words.WORDS,
@@ -175,45 +183,47 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     return environment
 
 
-def packed(value: Any) -> str:
-    """Text, or JSON of another value, that the page's script unpacks."""
+def pack(value: Any) -> str:
+    """Return text, or another value as JSON, compressed for the page's script to unpack."""
     if not isinstance(value, str):
+        # JSON has no NaN: the script could not read it.
         value = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return base64.b64encode(zlib.compress(value.encode(), 9)).decode()
 
 
-def size(drawing: str) -> list[int]:
-    """Width and height of an svg text, in points."""
+def read_size(drawing: str) -> list[int]:
+    """Read width and height of an svg text, in points."""
     found = (re.search(rf'\b{name}="([\d.]+)pt"', drawing) for name in ("width", "height"))
     return [round(float(each[1])) for each in found]
 
 
-def short(value: Any, digits: int = 4) -> str:
-    """A value as printed: a number to some significant digits, an unknown one as a dash."""
+def format_value(value: Any, digits: int = 4) -> str:
+    """Return a value as printed: a number to some significant digits, an unknown one as a dash."""
     if value is None:
         return "–"
     return naming.format_number(value, digits) if isinstance(value, float) else str(value)
 
 
-def labelled(text: Any, labels: dict[str, str]) -> str:
-    """Text in which the keys of methods and metrics are as printed.
+def label_keys(text: Any, labels: dict[str, str]) -> str:
+    """Return text with the keys of methods and metrics replaced by their printed names.
 
-    >>> labelled("the method mga_c of a_study", {"mga_c": "MGA-C"})
+    >>> label_keys("the method mga_c of a_study", {"mga_c": "MGA-C"})
     'the method MGA-C of a_study'
     """
     return re.sub(r"\w+_\w+", lambda found: labels.get(found[0], found[0]), str(text))
 
 
-def counts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
-    """Return how many rows there are of each verdict, in the order of `words.WORDS`."""
+def count_verdicts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
+    """Count the rows of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
     names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 
-def positions(cells: Iterable[reader.Row]) -> str:
-    """Return how many numbers of a table lie inside our range, and why they prove nothing, where
-    all share the reason.
+def describe_positions(cells: Iterable[reader.Row]) -> str:
+    """Say how many numbers of a table lie inside our range.
+
+    If all numbers share the reason for which this proves nothing, the text ends with it.
     """
     placed = [cell for cell in cells if cell["bar"]]
     if not placed:
@@ -226,18 +236,19 @@ def positions(cells: Iterable[reader.Row]) -> str:
         wide += f"{len(placed) - len(told)}"
         text = f"{text}; {wide}" if told else wide[0].upper() + wide[1:]
     reasons = {cell["reason"] for cell in placed}
+    # Different reasons stand beside their numbers.
     if len(reasons) == 1 and (reason := reasons.pop()):
         text += f". This proves nothing: {reason}"
     return text
 
 
-def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
-    """Numbers as rows and columns: a row for each combination of keys, the default reading
-    first, a column for each metric and statistic.
+def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
+    """Lay the numbers of a table out in rows and columns.
 
-    head: keys and columns as printed. rows: whether each is of the default reading, its keys
-    with the addresses of methods that they may name, its cells. same: keys that all rows share.
-    decimals: of each column.
+    A row is a combination of keys, those of the default reading first; a column is a metric with a
+    statistic. head: printed names of keys and columns. rows: for each a flag of the default
+    reading, its keys (each with the address of a method that it may name), and its cells. same:
+    keys that all rows share. decimals: a number for each column.
     """
     numbers = table["numbers"]
     values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
@@ -251,7 +262,10 @@ def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
     for cells in rows.values():
         keys = next(iter(cells.values()))["keys"]
         words = [
-            (_key(key, keys[key], labels), addresses.address(study, "method", keys[key]))
+            (
+                _format_key(key, keys[key], labels),
+                addresses.build_address(study, "method", keys[key]),
+            )
             for key in named
         ]
         primary = any(cell["primary"] for cell in cells.values())
@@ -260,22 +274,27 @@ def grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
         head=[labels.get(key, key.replace("_", " ")) for key in named] + columns,
         rows=sorted(listed, key=lambda row: not row[0]),
         same=[
-            f"{key.replace('_', ' ')}: {reader.printed_key(key, next(iter(each)), labels)}"
+            f"{key.replace('_', ' ')}: {reader.format_key(key, next(iter(each)), labels)}"
             for key, each in values.items()
             if key not in named
         ],
         decimals=[
-            max(_decimals(cell["value_published"]) for cell in numbers if cell["column"] == column)
+            max(
+                _count_decimals(cell["value_published"])
+                for cell in numbers
+                if cell["column"] == column
+            )
             for column in columns
         ],
     )
 
 
-def _key(key: str, value: Any, labels: dict[str, str]) -> str:
-    """A key in a column that names it, where a number stands alone."""
+def _format_key(key: str, value: Any, labels: dict[str, str]) -> str:
+    """Return a key for a column that names it, so that a number stands alone."""
     plain = isinstance(value, int | float)
-    return short(value) if plain else reader.printed_key(key, value, labels)
+    return format_value(value) if plain else reader.format_key(key, value, labels)
 
 
-def _decimals(value: float | None) -> int:
+def _count_decimals(value: float | None) -> int:
+    """Return how many decimals a value needs, at most four."""
     return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))

@@ -1,4 +1,4 @@
-"""Places of what the charts of the page show; the templates draw them."""
+"""Places of lines and marks in the charts of the page, which templates draw."""
 
 from itertools import groupby
 from typing import Any
@@ -9,8 +9,10 @@ Row = dict[str, Any]
 
 
 def add_bars(cells: list[Row]) -> None:
-    """Add bars to numbers with a range, on one axis a column: places from 0 to 100 of the ends of
-    our range, of ours, and of the printed number.
+    """Add a bar to each number that has a range, or None.
+
+    A bar has places from 0 to 100, on one axis a column: the ends of our range, ours, and the
+    printed number.
     """
     columns: dict[Any, list[Row]] = {}
     for cell in cells:
@@ -24,6 +26,7 @@ def add_bars(cells: list[Row]) -> None:
         low, high = min(reach), max(reach)
         width = high - low or 1.0
         for cell, (ours, printed), (left, right) in zip(column, marks, ends, strict=True):
+            # From 4 to 96, because marks at the ends need room.
             cell["bar"] = {
                 name: round(4 + 92 * (value - low) / width, 1)
                 for name, value in (
@@ -35,9 +38,11 @@ def add_bars(cells: list[Row]) -> None:
             }
 
 
-def forests(comparisons: list[Row]) -> list[list[Row]]:
-    """Comparisons of a claim by check and metric. Added to each: strip, the places from 0 to 100 of
-    effect, ends, reference, printed effect and margin on the scale of its group.
+def group_comparisons(comparisons: list[Row]) -> list[list[Row]]:
+    """Group the comparisons of a claim by check and metric, and add a strip to each.
+
+    A strip has places from 0 to 100 on the scale of its group: effect, ends, reference, printed
+    effect and margin.
     """
     groups = []
     kind = ("check", "test", "metric", "statistic", "unit", "primary")
@@ -49,8 +54,9 @@ def forests(comparisons: list[Row]) -> list[list[Row]]:
 
 
 def _add_strips(rows: list[Row]) -> None:
-    """The scale of a group holds every effect, also the printed ones, and intervals up to three
-    times the largest.
+    """Add strips on a scale that holds every effect, also the printed ones.
+
+    Intervals end at three times the largest effect, so that a wide one does not flatten the others.
     """
     effects = [row[name] for row in rows for name in ("effect", "effect_published")]
     effects = [effect for effect in effects if effect is not None]

@@ -1,5 +1,5 @@
-"""What the job that makes the page is made from, beside the tables of all studies together: names,
-plain values, and files.
+"""Fields of the job that makes the page: names, plain values and files, beside the tables of all
+studies together.
 """
 
 from typing import Any, NamedTuple
@@ -10,12 +10,12 @@ from bezierplan.figures.caption import Caption
 
 
 class MethodView(NamedTuple):
-    """A method of a study."""
+    """A method of a study, for its list on the page."""
 
     planner: str
     settings: dict[str, Any]
     about: str
-    """What its planner does: the docstring of the planner's file."""
+    """The docstring of its planner's file."""
 
 
 class ArtefactView(NamedTuple):
@@ -23,27 +23,27 @@ class ArtefactView(NamedTuple):
 
     caption: Caption
     spec: TableEntry | None = None
-    """Of a table, with what the one that it extends says of published numbers."""
+    """The entry of a table, with the published numbers of the one that it extends."""
 
 
 class ExperimentView(NamedTuple):
     """An experiment whose runs the viewer may show."""
 
     methods: list[str]
-    """Those that are shown."""
+    """The methods that are shown."""
     repeats: int
     moves: bool
-    """Whether runs are drives."""
+    """Tells if its runs are drives."""
 
 
 class StudyView(NamedTuple):
-    """A study of the page."""
+    """A study of the page, by names and plain values."""
 
     title: str
     paper: Any
     """Title, where it appeared, and DOI, as far as known; None for a reader's own study."""
     labels: dict[str, str]
-    """Name -> how it is printed."""
+    """Name -> printed name."""
     methods: dict[str, MethodView]
     claims: dict[str, Claim]
     """By id."""
@@ -56,7 +56,7 @@ class StudyView(NamedTuple):
     assumptions: list[dict[str, Any]]
     """Details that the paper leaves open: the keys of their file, with the default in use."""
     files: list[str]
-    """Which of `FILES` there are."""
+    """The names of `FILES` that exist."""
     changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
     experiments: dict[str, ExperimentView]
@@ -73,9 +73,9 @@ FILES = {
 
 
 class PageJob(NamedTuple):
-    """The page of a scale."""
+    """The page of a scale, by names and plain values."""
 
     scale: str
     studies: dict[str, StudyView]
     outcome: list[str]
-    """Studies of whose settings the project keeps the outcome of many runs."""
+    """Studies whose outcome of many runs the project keeps for the same settings."""

@@ -1,5 +1,5 @@
-"""What the page shows of each study: rows of the csv files of a scale, as mappings whose empty
-cells are None. Columns keep their names; what is added to a row stands in the functions below.
+"""The content of the page for each study: rows of a scale's csv files, as mappings whose empty
+cells are None. Columns keep their names, and functions say which keys they add to a row.
 """
 
 import json
@@ -15,7 +15,7 @@ from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
-from bezierplan.figures.page.addresses import address, of_cells
+from bezierplan.figures.page.addresses import build_address, build_cell_addresses
 from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
 from bezierplan.running.inputs import choose_tree
 
@@ -23,25 +23,29 @@ Row = dict[str, Any]
 
 
 def read(file: str | Path) -> pd.DataFrame:
-    """A csv file in which only an empty cell is a missing value."""
+    """Read a csv file, in which only an empty cell is a missing value."""
+    # Digits are a part of a printed number, such as the last zero of 1.50.
     texts = {"as_printed": str}
     return pd.read_csv(file, dtype=texts, keep_default_na=False, na_values=[""], low_memory=False)
 
 
-def records(table: pd.DataFrame) -> list[Row]:
-    """The rows of a table; None for a missing or infinite value."""
+def list_rows(table: pd.DataFrame) -> list[Row]:
+    """Return the rows of a table, with None for a missing or infinite value."""
+    # Only columns of objects can hold None.
     table = table.replace([np.inf, -np.inf], np.nan).astype(object)
     return table.where(table.notna(), None).to_dict("records")
 
 
-def of_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
-    """The rows of a study; none of no table."""
+def select_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
+    """Return the rows of a study, or an empty table if there is no table."""
     return pd.DataFrame() if table is None else table[table["study"] == study]
 
 
 class Evidence(NamedTuple):
-    """What many runs say of all studies: their numbers, claims, methods by problem, comparisons of
-    claims, and level and order of columns.
+    """The results of many runs of all studies.
+
+    They are numbers, claims, methods by problem, comparisons of claims, and level and order of
+    columns.
     """
 
     numbers: pd.DataFrame
@@ -50,91 +54,95 @@ class Evidence(NamedTuple):
     checks: pd.DataFrame
     wholes: pd.DataFrame
 
-    def of(self, studies: list[str]) -> "Evidence":
-        """Return that of some studies."""
+    def select(self, studies: list[str]) -> "Evidence":
+        """Return the evidence about some studies."""
         return Evidence(*(table[table["study"].isin(studies)] for table in self))
 
 
-def studies(
+def read_study_results(
     job: PageJob,
     folder: Path,
     summary: list[pd.DataFrame] | None,
     evidence: Evidence | None = None,
 ) -> dict[str, SimpleNamespace]:
-    """All studies, from the files in the folder of a scale, which are the mirror of the papers.
+    """Read the results of all studies from the folder of a scale.
 
-    summary: numbers, claims and methods by problem of all studies, if the scale has them.
-    evidence: what stands in place of the scale's own positions and verdicts.
+    summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
+    stands in place of the scale's own positions and verdicts.
     """
     numbers, _, measured = summary or [None] * 3
     pages = {}
     for key, view in job.studies.items():
         files = {name: read(folder / key / FILES[name]) for name in view.files}
-        substitute = evidence.of([key]) if evidence and key in job.outcome else None
+        substitute = evidence.select([key]) if evidence and key in job.outcome else None
         if substitute:
             files |= {"claims": substitute.claims, "checks": substitute.checks}
-        claims = _claims(key, view, files)
-        counted = of_study(numbers, key)
+        claims = _list_claims(key, view, files)
+        counted = select_study(numbers, key)
         own_tables = [
-            _table(key, name, each, folder, view.labels, counted, substitute)
+            _describe_table(key, name, each, folder, view.labels, counted, substitute)
             for name, each in view.tables.items()
         ]
-        of_problems = substitute.methods if substitute else of_study(measured, key)
+        of_problems = substitute.methods if substitute else select_study(measured, key)
         pages[key] = SimpleNamespace(
             key=key,
             job=view,
             claims=claims,
             tables=own_tables,
-            figures=[_figure(key, name, each, folder) for name, each in view.figures.items()],
-            methods=[_method(key, name, each) for name, each in view.methods.items()],
-            assumptions=[_assumption(key, each, view.labels) for each in view.assumptions],
-            audit=records(files.get("audit", pd.DataFrame())),
-            families=_families(of_problems, view.labels),
+            figures=[
+                _describe_figure(key, name, each, folder) for name, each in view.figures.items()
+            ],
+            methods=[_describe_method(key, name, each) for name, each in view.methods.items()],
+            assumptions=[_describe_assumption(key, each, view.labels) for each in view.assumptions],
+            audit=list_rows(files.get("audit", pd.DataFrame())),
+            families=_describe_families(of_problems, view.labels),
             shown=[],
         )
     return pages
 
 
-def _families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
-    """Return the methods of a study on each family of its problems, as words; None without."""
+def _describe_families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
+    """Return the methods of a study on each family of its problems, as words; None if there are
+    none.
+    """
     if of_problems.empty:
         return None
     rows = methods.group_by_family(of_problems)
     return methods.format_table(rows, labels) if len(rows) else None
 
 
-def _method(study: str, name: str, method: Any) -> Row:
-    """A method, with the paragraphs on what its planner does."""
+def _describe_method(study: str, name: str, method: Any) -> Row:
+    """Return a method, with the paragraphs on its planner."""
     paragraphs = method.about.split("\n\n")
     about = [" ".join(paragraph.replace("`", "").split()) for paragraph in paragraphs]
     return method._asdict() | {
         "name": name,
-        "address": address(study, "method", name),
+        "address": build_address(study, "method", name),
         "about": about,
     }
 
 
-def _artefact(study: str, name: str, artefact: Any) -> Row:
-    """A table or figure: the parts of its caption, its address, and the path of its files without
-    endings.
+def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
+    """Return the caption's parts of a table or figure, its address, and the path of its files
+    without endings.
     """
     return artefact.caption._asdict() | {
         "name": name,
-        "address": address(study, name),
+        "address": build_address(study, name),
         "stem": f"{study}/{choose_tree(name)}/{name}",
         "of_paper": choose_tree(name) == "paper",
     }
 
 
-def _figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
-    """A figure, with the runs that it shows and what can be counted in it, in words."""
-    row = _artefact(study, name, artefact)
+def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
+    """Return a figure with its notes: the runs that it shows, and what can be counted in it."""
+    row = _describe_artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
     _, runs, *counts = text.split("\n", 2)
     return row | {"runs": runs, "counts": "".join(counts).strip()}
 
 
-def _table(
+def _describe_table(
     study: str,
     name: str,
     artefact: ArtefactView,
@@ -143,28 +151,31 @@ def _table(
     counted: pd.DataFrame,
     evidence: Evidence | None,
 ) -> Row:
-    """A table: its numbers next to published ones, or its columns and rows."""
-    row, spec = _artefact(study, name, artefact), artefact.spec
+    """Return a table: its numbers next to published ones, or its columns and rows."""
+    row, spec = _describe_artefact(study, name, artefact), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])
     if not compared:
-        return row | {"numbers": [], "laid": None, "columns": list(table), "rows": records(table)}
+        return row | {"numbers": [], "laid": None, "columns": list(table), "rows": list_rows(table)}
     counted = counted[counted["table"] == name] if len(counted) else counted
     many = evidence.numbers[evidence.numbers["table"] == name] if evidence else pd.DataFrame()
-    cells = _numbers(row["address"], table, spec, counted, many, labels)
+    cells = _list_numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
     columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else pd.DataFrame()
-    row["wholes"] = _wholes(columns, spec, labels) if len(columns) else ""
-    return row | {"numbers": cells, "laid": _laid(folder / f"{row['stem']}.csv", spec, cells)}
+    row["wholes"] = _describe_wholes(columns, spec, labels) if len(columns) else ""
+    return row | {
+        "numbers": cells,
+        "laid": _lay_out_table(folder / f"{row['stem']}.csv", spec, cells),
+    }
 
 
-def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
-    """Return what differs between columns of printed means and ours: their order, or level."""
+def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
+    """Say how columns of printed means differ from ours, in order or level."""
     told = []
-    for row in records(columns[columns["position"].isin(["below", "above"])]):
-        head = [_heading(row["metric"], "mean", spec, labels)]
+    for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
+        head = [_format_heading(row["metric"], "mean", spec, labels)]
         for key, value in json.loads(row["place"]).items():
             if value != spec.primary.get(key):
                 head.append(naming.format_value(value, key, labels))
@@ -178,9 +189,11 @@ def _wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
     return "; ".join(told)
 
 
-def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
-    """A table as the paper prints it. head: of its columns. rows: the names of each, and its cells:
-    printed, ours, and the number (None where there is none).
+def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
+    """Lay a table out as the paper prints it.
+
+    head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
+    the number is None if nothing is published.
     """
     ours = pd.read_csv(file, dtype=str, keep_default_na=False)
     heads = len(spec.index)
@@ -193,7 +206,7 @@ def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
     return {"head": list(ours), "rows": rows, "note": spec.note}
 
 
-def _numbers(
+def _list_numbers(
     table: str,
     comparison: pd.DataFrame,
     spec: Pivot,
@@ -201,10 +214,12 @@ def _numbers(
     many: pd.DataFrame,
     labels: dict[str, str],
 ) -> list[Row]:
-    """The cells of a table: those with a published number, and what other methods have in the same
-    column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
-    runs would print it), apart (relative to the published number), bar (`charts.add_bars`). many:
-    the rows of the evidence, in place of the table's own.
+    """Return the cells of a table that have a published number, and other methods' cells in the
+    same columns.
+
+    many: rows of the evidence, which replace the table's own values. Added keys: keys, row, column
+    (printed names), address, beside (ours for the paper's number of runs), apart (relative to the
+    published number), bar (`charts.add_bars`).
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -214,27 +229,30 @@ def _numbers(
     if len(counted):
         comparison.loc[published, "counted"] = counted["counted"].to_numpy()
     printed = comparison.loc[published, what].drop_duplicates()
-    cells = records(comparison.merge(printed, on=what))
+    cells = list_rows(comparison.merge(printed, on=what))
     positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
-    by_place = {address(*(row[name] for name in positions[0])): row for row in records(many)}
+    by_place = {
+        build_address(*(row[name] for name in positions[0])): row for row in list_rows(many)
+    }
     for cell, position, name in zip(
-        cells, positions, of_cells(table, positions, spec.primary), strict=True
+        cells, positions, build_cell_addresses(table, positions, spec.primary), strict=True
     ):
-        if row := by_place.get(address(*position.values())):
+        # The evidence has the same columns, of many runs.
+        if row := by_place.get(build_address(*position.values())):
             cell |= {name: value for name, value in row.items() if name in cell}
         cell |= {
             "keys": {key: position[key] for key in keys},
-            "row": ", ".join(printed_key(key, position[key], labels) for key in keys),
-            "column": _heading(cell["metric"], cell["statistic"], spec, labels),
+            "row": ", ".join(format_key(key, position[key], labels) for key in keys),
+            "column": _format_heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
-            **_distance(cell),
+            **_compute_distance(cell),
         }
     charts.add_bars(cells)
     return cells
 
 
-def _distance(cell: Row) -> Row:
-    """Return beside and apart of a number (`_numbers`)."""
+def _compute_distance(cell: Row) -> Row:
+    """Return beside and apart of a number (`_list_numbers`)."""
     scaled, number = cell["value_ours_scaled"], cell["value_published"]
     beside = cell["value_ours"] if scaled is None else scaled
     return {
@@ -243,16 +261,17 @@ def _distance(cell: Row) -> Row:
     }
 
 
-def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:
-    """The value of a key column as printed; a number is named."""
+def format_key(column: str, value: Any, labels: dict[str, str]) -> str:
+    """Return the value of a key column as printed; a number stands with its name."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
     return naming.format_value(value, column, labels)
 
 
-def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
-    """Metric and statistic as the table prints them; one that the paper does not state stands
-    beside our median.
+def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
+    """Return metric and statistic as the table prints them.
+
+    An unstated statistic stands beside our median.
     """
     beside = {statistic, "median"} if statistic == "unstated" else {statistic}
     for value in spec.values:
@@ -261,29 +280,32 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
     return f"{naming.name_column(metric, labels)}: {statistic}"
 
 
-def _claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
-    """Claims in their primary variant, each with its other variants (`others`)."""
+def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
+    """Return claims in their primary variant, each with its other variants (`others`)."""
     if "claims" not in files:
         return []
     compared: dict[tuple, list[Row]] = {}
-    for row in records(files.get("checks", pd.DataFrame())):
+    for row in list_rows(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
     names = sentences.name_variants([*content.claims.values()], content.labels)
     claims: dict[str, Row] = {}
     others: dict[str, list[Row]] = {}
-    for row in records(files["claims"]):
+    for row in list_rows(files["claims"]):
         if row["primary"]:
             comparisons = compared.get((row["id"], row["variant"]), [])
             named = {"variant": names.get(row["variant"] or "", "")}
-            claims[row["id"]] = _claim(study, row, comparisons, content) | named
+            claims[row["id"]] = _describe_claim(study, row, comparisons, content) | named
         else:
             other = row | {"variant": names.get(row["variant"], row["variant"])}
             others.setdefault(row["id"], []).append(other)
     return [claim | {"others": others.get(name, [])} for name, claim in claims.items()]
 
 
-def _claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
-    """A claim. Added: address, rule (what its count means), why, comparisons, shown_in."""
+def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
+    """Return a claim with its comparisons.
+
+    Added keys: address, rule (the meaning of its count), why, comparisons, shown_in.
+    """
     described = content.claims.get(claim["id"])
     checks = described.checks if described else []
     for row in comparisons:
@@ -292,17 +314,20 @@ def _claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -
         row["name"] = sentences.name_comparison(row, check, content.labels)
     there = content.tables.keys() | content.figures.keys()
     return claim | {
-        "address": address(study, claim["id"]),
+        "address": build_address(study, claim["id"]),
         "rule": sentences.describe_count(described, claim["verdict"], claim["holds"]),
-        "why": _why(claim, comparisons, checks, content.labels),
+        "why": _explain_verdict(claim, comparisons, checks, content.labels),
         "comparisons": comparisons,
         "shown_in": [name for name in (claim["artefact"] or "").split(", ") if name in there],
     }
 
 
-def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]) -> str:
-    """The sentence that says why, from the decisive comparison; empty without one, or for a check
-    that the study has no more.
+def _explain_verdict(
+    claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]
+) -> str:
+    """Return the sentence on the decisive comparison, which says why.
+
+    It is empty if there is none, or if the study does not have the check any more.
     """
     row = next((each for each in comparisons if each["decisive"]), None)
     if row is None or row["check"] > len(checks):
@@ -312,11 +337,14 @@ def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str
     )
 
 
-def _assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
-    """A detail that the paper leaves open; default: one for all, or each with what has it."""
+def _describe_assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
+    """Return a detail that the paper leaves open.
+
+    default: one for all, or each with the names that have it.
+    """
     default = row["default"]
     if isinstance(default, dict):
         values = {labels.get(name, name): value for name, value in default.items()}
         one, *others = dict.fromkeys(map(str, values.values()))
         default = ", ".join(f"{name}: {values[name]}" for name in values) if others else one
-    return row | {"address": address(study, row["id"]), "default": default}
+    return row | {"address": build_address(study, row["id"]), "default": default}

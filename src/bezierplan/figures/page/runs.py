@@ -1,5 +1,5 @@
-"""The runs that the viewer shows: of each method on each problem, and on all of an experiment, some
-of the feasible and the failed. What is made here becomes JSON in the page, for its script.
+"""The runs that the viewer shows: some feasible and some failed runs of each method, on each
+problem and in an experiment as a whole. The page's script reads them as JSON.
 
 Runs are ranked by their length over the exact bound of their problem, so that those on different
 problems compare.
@@ -41,11 +41,13 @@ _DRAWN = [
 Row = dict[str, Any]
 
 
-def chosen(
+def choose_runs(
     study: str, experiment: str, content: ExperimentView, inputs: Files
 ) -> tuple[list[Row], Row]:
-    """The runs of an experiment that the viewer shows: which of each method on each problem; and
-    the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
+    """Choose the runs of an experiment that the viewer shows.
+
+    Returns which runs these are, by method and problem; and `runs`, `problems` and `workspaces` by
+    name. All other runs give only their lengths.
     """
     bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
@@ -64,10 +66,11 @@ def chosen(
     for problem, runs in groups:
         by_method = dict(iter(runs.groupby("method", sort=False)))
         choice += [
-            _shown(experiment, problem, method, by_method[method])
+            _choose_runs_of_method(experiment, problem, method, by_method[method])
             for method in content.methods
             if method in by_method
         ]
+    # Histories and points are taken from the tables for these runs alone.
     ids = {
         name
         for each in choice
@@ -81,26 +84,28 @@ def chosen(
     rows = pd.concat(kept) if kept else ranking
     made, moving = problem_files.read(inputs.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
-    traces = _traces(inputs.chunks if content.moves else [], list(by_name))
+    traces = _read_traces(inputs.chunks if content.moves else [], list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
-        name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
+        name: _describe_run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
         for name, row in by_name.items()
     }
     for name, trace in traces.items():
         row = by_name[name]
-        runs[name] |= _drive(runs[name]["path"], trace, row, moving[row["problem"]].pace)
+        runs[name] |= _describe_drive(runs[name]["path"], trace, row, moving[row["problem"]].pace)
     ids = rows["problem"].unique()
-    workspaces = {prefix + name: _shapes(made[name]) for name in ids}
+    workspaces = {prefix + name: _list_shapes(made[name]) for name in ids}
     problems = {
-        prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name])
+        prefix + name: _describe_problem(
+            prefix + name, made[name], moving.get(name), bounds.loc[name]
+        )
         for name in ids
     }
     return choice, {"runs": runs, "workspaces": workspaces, "problems": problems}
 
 
-def _traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
-    """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
+def _read_traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
+    """Read the places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
     files = [Path(chunk).with_suffix(".traces.parquet") for chunk in chunks]
     tables = [
         parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)])
@@ -113,8 +118,11 @@ def _traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     }
 
 
-def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Row:
-    """Which runs of a method are shown. gap: that of the median run; None without feasible runs."""
+def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Row:
+    """Choose the best, the median, the worst and some failed runs of a method.
+
+    gap: the median run's; None if no run is feasible.
+    """
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
     ordered = sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
@@ -125,7 +133,7 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Ro
         "method": method,
         "count": len(runs),
         "feasible": len(ordered),
-        "gap": _finite(gap),
+        "gap": _round_finite(gap),
         "best": ordered[0][1] if ordered else None,
         "median": median,
         "worst": ordered[-1][1] if ordered else None,
@@ -133,37 +141,41 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Ro
     }
 
 
-def _shapes(problem: Problem) -> dict[str, Any]:
-    shapes = _rounded_json(files.write_json(problem.workspace))
+def _list_shapes(problem: Problem) -> dict[str, Any]:
+    """Return the workspace of a problem as plain values with its bounds."""
+    shapes = _round_json(files.write_json(problem.workspace))
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
-def _rounded_json(text: str) -> dict[str, Any]:
-    """The content of JSON with numbers of seven digits."""
+def _round_json(text: str) -> dict[str, Any]:
+    """Return the content of JSON with numbers of seven digits."""
     return json.loads(text, parse_float=lambda number: float(f"{float(number):.7g}"))
 
 
-def _problem(workspace: str, problem: Problem, world: worlds.World | None, bound: pd.Series) -> Row:
-    """A workspace with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
-    size = _size(problem.workspace.bounds)
+def _describe_problem(
+    workspace: str, problem: Problem, world: worlds.World | None, bound: pd.Series
+) -> Row:
+    """Return a problem with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
+    size = _measure_side(problem.workspace.bounds)
     path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
     return {
         "workspace": workspace,
-        "world": None if world is None else _world(world),
+        "world": None if world is None else _describe_world(world),
         "start": problem.start,
         "target": problem.target,
-        "bound": _finite(bound["bound"]),
-        "bound_path": _rounded(_simplified(path, _FLAT * size), size),
+        "bound": _round_finite(bound["bound"]),
+        "bound_path": _round_points(_reduce_points(path, _FLAT * size), size),
     }
 
 
-def _world(world: worlds.World) -> Row:
-    """How obstacles move, time in steps: circles (x, y, velocities, radius), whose centres are
-    reflected at walls; or cells that change at some moments, counted row by row from the top left
-    one.
+def _describe_world(world: worlds.World) -> Row:
+    """Return how obstacles move, with time in steps.
+
+    Circles have x, y, velocities and radius, and walls reflect their centres. Cells change at some
+    moments; they are counted row by row from the top left one.
     """
     if isinstance(world, worlds.MovingCircles):
-        content = _rounded_json(worlds.to_json(world))
+        content = _round_json(worlds.to_json(world))
         return {"walls": list(world.walls), "circles": content["circles"]}
     changed = [
         np.flatnonzero(before.occupied[::-1] != after.occupied[::-1]).tolist()
@@ -172,9 +184,11 @@ def _world(world: worlds.World) -> Row:
     return {"circles": [], "moments": world.moments.tolist(), "changed": changed}
 
 
-def _drive(path: list[float], trace: np.ndarray, row: Row, pace: float) -> Row:
-    """What belongs to a drive: the distance along its path at each step; the place of its first
-    collision is where the robot was then.
+def _describe_drive(path: list[float], trace: np.ndarray, row: Row, pace: float) -> Row:
+    """Return the additions to a run that is a drive, such as the distance along its path at each
+    step.
+
+    The place of its first collision is the robot's place at that time.
     """
     size = float(np.ptp(trace, axis=0).max()) or 1.0
     steps, collision = float(row["steps"]), None
@@ -183,18 +197,18 @@ def _drive(path: list[float], trace: np.ndarray, row: Row, pace: float) -> Row:
         collision = [float(np.interp(row["collision_at"], times, along)) for along in trace.T]
     return {
         "control": [],
-        "driven": _rounded(_driven(np.reshape(path, (-1, 2)), trace, pace), size),
+        "driven": _round_points(_measure_way(np.reshape(path, (-1, 2)), trace, pace), size),
         "steps": steps,
         "collision": collision,
-        "collision_step": _finite(row["collision_at"]),
+        "collision_step": _round_finite(row["collision_at"]),
     }
 
 
-def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
-    """Length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it, which
-    covers at most a pace from one to the next.
+def _measure_way(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
+    """Return the length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it.
 
-    A way may cross itself, so each place is looked for within a pace of the one before.
+    pace: the longest way from one place to the next. A way may cross itself, so each place is
+    searched for only within a pace of the one before.
     """
     import shapely
     from shapely.ops import substring
@@ -208,48 +222,58 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     return np.array(distances)
 
 
-def _run(row: Row, bounds: Bounds, problem: str) -> Row:
-    """A run, its points rounded to what a picture shows. claimed: the planner's own verdict."""
-    from bezierplan.figures.panels.paths import steps
+def _describe_run(row: Row, bounds: Bounds, problem: str) -> Row:
+    """Return a run with its points rounded to the resolution of the picture.
 
-    path, size = results.build_path(row), _size(bounds)
+    claimed: the planner's own verdict.
+    """
+    from bezierplan.figures.panels.paths import sample_path
+
+    path, size = results.build_path(row), _measure_side(bounds)
     collides = path is not None and not row["feasible"] and np.isfinite(row["collision_at"])
     return {
         "problem": problem,
         "feasible": bool(row["feasible"]),
         "claimed": bool(row["claimed_feasible"]),
-        "length": _finite(row["length"]),
-        "clearance": _finite(row["clearance"]),
+        "length": _round_finite(row["length"]),
+        "clearance": _round_finite(row["clearance"]),
         "collision": curves.point_at(path, row["collision_at"]).tolist()
         if collides and "steps" not in row
         else None,
-        "depth": _finite(row["collision_depth"]),
+        "depth": _round_finite(row["collision_depth"]),
         "evaluations": int(row["evaluations"]),
         "stop": str(row["stop"]),
         "curve": row["path_curve"] or "",
-        "path": [] if path is None else _rounded(_simplified(steps(path), _FLAT * size), size),
-        "control": [] if path is None or path.curve == "ferguson" else _rounded(path.points, size),
-        "history": _history(row["history"]),
+        "path": []
+        if path is None
+        else _round_points(_reduce_points(sample_path(path), _FLAT * size), size),
+        # Points of this curve are tangents too, and bend it otherwise.
+        "control": []
+        if path is None or path.curve == "ferguson"
+        else _round_points(path.points, size),
+        "history": _reduce_history(row["history"]),
         "steps": None,
     }
 
 
-def _size(bounds: Bounds) -> float:
+def _measure_side(bounds: Bounds) -> float:
+    """Return the length of the longer side of a workspace."""
     return max(bounds[1] - bounds[0], bounds[3] - bounds[2])
 
 
-def _finite(value: float) -> float | None:
+def _round_finite(value: float) -> float | None:
+    """Return a number of seven digits, or None for one that is missing or infinite."""
     return float(f"{value:.7g}") if value is not None and np.isfinite(value) else None
 
 
-def _rounded(points: np.ndarray, size: float) -> list[float]:
-    """Points (n, 2) as x0, y0, ..., to about a ten-thousandth of the workspace."""
+def _round_points(points: np.ndarray, size: float) -> list[float]:
+    """Return points (n, 2) as x0, y0, ..., rounded to a ten-thousandth of the workspace."""
     decimals = max(0, 4 - int(np.floor(np.log10(size))))
     return np.round(points, decimals).ravel().tolist()
 
 
-def _simplified(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """As few of the points (n, 2) of a line as keep within a tolerance of it."""
+def _reduce_points(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return as few points of a line (n, 2) as keep within a tolerance of it."""
     import shapely
 
     return (
@@ -259,9 +283,9 @@ def _simplified(points: np.ndarray, tolerance: float) -> np.ndarray:
     )
 
 
-def _history(history: np.ndarray) -> list[tuple[int, float]]:
-    """Generation and objective where the best objective changes, and at the end; thinned out if
-    there are many.
+def _reduce_history(history: np.ndarray) -> list[tuple[int, float]]:
+    """Return (generation, objective) at each change of the best objective and at the end, at most
+    `_MOST_STEPS`.
     """
     values = np.asarray(history, dtype=float)
     known = np.flatnonzero(np.isfinite(values))

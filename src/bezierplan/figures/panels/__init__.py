@@ -1,12 +1,12 @@
-"""One file per kind of panel, here or in a folder `panels` of `papers`.
+"""Kinds of panel, one file each, here or in a folder `panels` of `papers`.
 
 Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an
 instance, and
 
-- `data(source, options)`: the table of what is drawn, from what `source` of the options finds:
-  runs, a workspace, a function's table
+- `data(source, options)`: makes the table of the panel from runs, a workspace or a function's
+  table, whichever `source` of the options finds
 - `draw(axes, frame, scene, options)`: draws the rows of its panel in that table, and returns a
-  `Note`: what the panel says in words
+  `Note`, the panel in words
 
 `draw` labels its artists for the legend, and computes no statistics. A kind whose panels are not
 flat has `PROJECTION`, matplotlib's name for it.
@@ -59,11 +59,11 @@ MOST_PANELS = 26
 
 
 class Note(NamedTuple):
-    """What a panel says in words.
+    """A panel in words.
 
-    heading: a few words below its title. caption: what belongs into the figure's notes, such as
-    the run that it shows and the runs that it counts, in clauses joined by semicolons. glance: what
-    is plain to the eye, for those who do not see the picture.
+    heading: a few words below its title. caption: clauses for the figure's notes, joined by
+    semicolons, such as the run that it shows and the runs that it counts. glance: things that are
+    plain to the eye, for those who do not see the picture.
     """
 
     heading: str = ""
@@ -79,12 +79,12 @@ EACH = (
 
 @dataclass(frozen=True)
 class Sources:
-    """What the panels of a figure draw from.
+    """The sources of a figure's panels.
 
-    results: by experiment. workspaces, problems: those drawn without runs, by name. functions:
-    those of the study's module, by name. published: all published tables by file name. study: its
-    name, from which with others the runs of panels that plan take their seeds. alternatives: what
-    each is (assumption, detail, value), and the comparisons of claims under it.
+    results: by experiment. workspaces, problems: by name, if they are drawn without runs.
+    functions: by name, from the study's module. published: all published tables by file name.
+    study: its name, a part of the seeds of runs that panels plan. alternatives: each alternative
+    (assumption, detail, value) with the comparisons of claims under it.
     """
 
     results: Mapping[str, Results] = field(default_factory=dict)
@@ -96,11 +96,14 @@ class Sources:
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
 
-    def table(self, panel: TablePanel) -> pd.DataFrame:
-        """The table of a function, which is called once for all panels that draw the same one: with
-        the workspace if they name one, with the published tables that they name, and with their
+    def build_table(self, panel: TablePanel) -> pd.DataFrame:
+        """Build the table of a panel with a function of the study, once for all panels that draw
+        the same one.
+
+        The function gets the workspace and the published tables that the panel names, and its
         arguments.
         """
+        # As text, because arguments may be lists, which cannot be keys.
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
             first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
@@ -111,11 +114,11 @@ class Sources:
 
 
 class Panel(Model, ABC):
-    """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
+    """Keys common to all kinds of panel, and the needs of a kind beside its panels.
 
-    rerun: whether runs are repeated to draw what no table keeps. one: columns of which the runs
-    that it shows have one value. drives: whether these are drives. tracks: whether
-    their planner must have `track`.
+    rerun: tells if runs are repeated to draw values that no table keeps. one: columns in which the
+    runs shown have one value. drives: tells if these are drives. tracks: tells if their planner
+    must have `track`.
     """
 
     rerun: ClassVar[bool] = False
@@ -133,11 +136,11 @@ class Panel(Model, ABC):
 
     @abstractmethod
     def source(self, sources: Sources) -> Any:
-        """What it draws from, as `data` of its kind takes it."""
+        """Return the source of its drawing, as `data` of its kind takes it."""
 
     @property
     def place(self) -> str:
-        """Where it stands in the list of panels in the file: the keys that lead to it."""
+        """Return the keys that lead to the panel in the file."""
         return self._place
 
 
@@ -157,14 +160,14 @@ class RunsPanel(Panel):
     )
 
     def source(self, sources: Sources) -> Any:
-        """Results of the experiment, with the runs that are shown."""
+        """Return the results of the experiment with the runs that are shown."""
         from bezierplan.analysis.results import select
 
         results = sources.results[self.experiment]
         return results._replace(runs=select(results.runs, self.where))
 
-    def home(self, frame: pd.DataFrame, scene: Any) -> files.Workspace:
-        """The workspace of the runs in the table of what is drawn."""
+    def find_workspace(self, frame: pd.DataFrame, scene: Any) -> files.Workspace:
+        """Return the workspace of the runs in the table of a panel."""
         return scene.problems[self.experiment][frame["problem"].iloc[0]].workspace
 
 
@@ -186,10 +189,10 @@ class TablePanel(Panel):
     )
 
     def source(self, sources: Sources) -> Any:
-        """The rows of the function's table that are shown."""
+        """Return the rows of the function's table that are shown."""
         from bezierplan.analysis.results import select
 
-        return select(sources.table(self), self.where).copy()
+        return select(sources.build_table(self), self.where).copy()
 
 
 class MetricPanel(RunsPanel):
@@ -207,7 +210,7 @@ class MetricPanel(RunsPanel):
 
 
 class Pick(Model):
-    """One run."""
+    """A choice of one run."""
 
     lowest: Quantity = Field(
         None,
@@ -231,6 +234,7 @@ class Pick(Model):
 
     @model_validator(mode="after")
     def _check_one(self) -> Pick:
+        """Refuse anything but one way to choose a run."""
         ways = self.model_fields_set - {"having", "layout"}
         if len(ways) != 1:
             raise build_error(
@@ -247,16 +251,17 @@ PICK = (
 )
 
 
-def exactly_one(panel: Model, *keys: str) -> None:
+def require_one(panel: Model, *keys: str) -> None:
     """Raise the error of a panel that does not have exactly one of the keys."""
     both = [key for key in keys if key in panel.model_fields_set]
     if len(both) != 1:
         raise build_error(f"{' and '.join(both) or 'neither'}: expected either {' or '.join(keys)}")
 
 
-def only(runs: pd.DataFrame, column: str) -> Any:
-    """The one value of a column of the runs that a panel shows. Raises ValueError if there are
-    others.
+def find_only(runs: pd.DataFrame, column: str) -> Any:
+    """Return the one value of a column of the runs that a panel shows.
+
+    Raises ValueError if there are others.
     """
     values = list(runs[column].unique())
     if len(values) != 1:
@@ -267,21 +272,22 @@ def only(runs: pd.DataFrame, column: str) -> Any:
     return values[0]
 
 
-def _places() -> dict[str, str]:
+def _find_places() -> dict[str, str]:
+    """Return the file of each kind of panel."""
     return find_kinds("figures/panels", "panels")
 
 
-def kind_module(name: str) -> ModuleType:
-    """The file of a kind of panel. Raises KeyError if there is none."""
-    return load_module(_places()[name])
+def load_kind(name: str) -> ModuleType:
+    """Load the file of a kind of panel. Raises KeyError if there is none."""
+    return load_module(_find_places()[name])
 
 
-def panel_of(keys: dict[str, Any]) -> Panel:
-    """The panel of a job, from its plain values."""
-    return kind_module(keys["kind"]).Options.model_validate(keys)
+def build_panel(keys: dict[str, Any]) -> Panel:
+    """Build the panel of a job from its plain values."""
+    return load_kind(keys["kind"]).Options.model_validate(keys)
 
 
 @functools.cache
-def kinds() -> dict[str, type[Panel]]:
-    """Kind of panel -> the options of its panels."""
-    return {name: kind_module(name).Options for name in _places()}
+def list_kinds() -> dict[str, type[Panel]]:
+    """Return the options of the panels of each kind."""
+    return {name: load_kind(name).Options for name in _find_places()}

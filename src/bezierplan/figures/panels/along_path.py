@@ -1,4 +1,4 @@
-"""The curvature along the path of one picked run, with the limit that the paper claims for it."""
+"""The curvature along the path of one chosen run, with the limit that the paper claims for it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
-from bezierplan.figures.panels.paths import picked, run_note
+from bezierplan.figures.panels.paths import choose_run, describe_run
 from bezierplan.geometry import curves
 from bezierplan.schema.model import Number
 
@@ -39,11 +39,11 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`,
-    quantity, limit, pieces (that the path is made of), t (0 to 1), value.
+    """Return one row per sample of a path, uniform in its parameter.
 
-    The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the
-    speed is zero. Without a path, one row without t and value.
+    Columns of `paths.choose_run` come first, then quantity, limit, pieces (of the path), t (0 to
+    1), value. The value of curvature has its sign, with left turns positive, in 1/unit, and is
+    empty where the speed is zero. If there is no path, one row has neither t nor value.
 
     Raises ValueError unless all runs are of one problem and one method.
     """
@@ -51,7 +51,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     from bezierplan.analysis.results import build_path
 
-    run, names = picked(results, options.pick)
+    run, names = choose_run(results, options.pick)
     names |= {"quantity": options.quantity, "limit": options.limit}
     path = None if run is None else build_path(run)
     if path is None:
@@ -63,8 +63,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the curvature with its limits, and mark the largest magnitude."""
     row = frame.iloc[0]
-    unit = options.home(frame, scene).unit
+    unit = options.find_workspace(frame, scene).unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
     axes.set_ylabel(f"signed curvature (1/{unit})")
@@ -74,7 +75,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             axes.axhline(side * row["limit"], label=label, zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
         missing = "no path" if frame["t"].isna().all() else "the curve is a single point"
-        return Note("", run_note(frame, missing))
+        return Note("", describe_run(frame, missing))
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
     for joint in range(1, int(row["pieces"]) if options.context else 1):
         axes.axvline(joint / row["pieces"], label="joint of two pieces", zorder=2, **_JOINT)
@@ -82,8 +83,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
-    """Mark the value of largest magnitude and fit the scale to it; returns what to say about it and
-    about the samples left out.
+    """Mark the value of largest magnitude and fit the scale to it.
+
+    Returns a note about that value and about the samples left out.
     """
     highest = frame.loc[frame["value"].abs().idxmax()]
     limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])
@@ -97,5 +99,5 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
     left_out = f"{still} of {len(frame)} samples left out, where the curve stands still"
     return Note(
         f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}",
-        run_note(frame, *([left_out] if still else [])),
+        describe_run(frame, *([left_out] if still else [])),
     )

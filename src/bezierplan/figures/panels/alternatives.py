@@ -1,5 +1,5 @@
-"""A specification curve: what a claim rests on, the effect with its interval, by default and under
-every single alternative to what the paper leaves open.
+"""A specification curve: the effect behind a claim with its interval, by default and under every
+single alternative to details that the paper leaves open.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _SHARES = {"all": 1.0, "some": 0.0, "none": 0.0, "as printed": "nan"}
 
 
 class Options(Panel):
-    """Keys of a panel."""
+    """Keys of a panel that shows a claim under all alternatives."""
 
     claim: Annotated[ClaimId, Names("claim")] = Field(
         description="the id of a claim: its decisive comparison is drawn, by default and under "
@@ -49,7 +49,7 @@ class Options(Panel):
     )
 
     def source(self, sources: Sources) -> pd.DataFrame:
-        """The decisive comparison under each alternative."""
+        """Return the decisive comparison under each alternative."""
         import pandas as pd
 
         rows = []
@@ -63,9 +63,10 @@ _COMPARED = ["metric", "statistic", "unit", "scale", "group", "relation", "other
 
 
 def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per alternative, the default first, then those of each assumption, and the
-    assumptions by how far one of them moves the effect; columns: assumption, detail, value, what is
-    compared, effect, low95, high95, mark.
+    """Return one row per alternative: first the default, then those of each assumption.
+
+    Assumptions are sorted by how far one of their values moves the effect, the largest first.
+    Columns: assumption, detail, value, those that name the comparison, effect, low95, high95, mark.
     """
     frame = source.reindex(
         columns=["assumption", "detail", "value", *_COMPARED, "effect", "low95", "high95", "mark"]
@@ -78,7 +79,7 @@ def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows from top to bottom: in words at the left, what is open and its value."""
+    """Draw the rows from top to bottom, with details and values in words at the left."""
     default, effect = frame.iloc[0], frame["effect"].to_numpy()
     places = _name_rows(axes, frame)
     band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
@@ -108,7 +109,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
-    """Write what is open and its values beside the axes, shape them, and return where rows are."""
+    """Write details and values beside the axes, shape the axes, and return where rows are."""
     names = frame["value"].astype(str).str.replace("_", " ")
     beside = 4 + 4.1 * names.str.len().max()
     words = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points", "ha": "right"}
@@ -132,7 +133,7 @@ def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
 
 
 def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
-    """Return what the axis of the effect shows."""
+    """Return the label of the axis of the effect."""
     metric = naming.name_column(row["metric"], scene.labels)
     if is_share:
         return f"share of runs: {metric}"

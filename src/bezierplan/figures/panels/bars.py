@@ -1,5 +1,5 @@
-"""A metric's statistic as bars with intervals, for the values of one column, side by side for those
-of another; with the numbers that the paper prints.
+"""A metric's statistic as bars with intervals: a place for each value of one column, a bar at it
+for each value of another, and the numbers that the paper prints.
 """
 
 from __future__ import annotations
@@ -10,7 +10,13 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.groups import axis_label, published, runs_note, show_metric, summary
+from bezierplan.figures.groups import (
+    compute_summary,
+    describe_axis,
+    describe_runs,
+    find_published,
+    show_metric,
+)
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column
 
@@ -45,23 +51,23 @@ class Options(MetricPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per bar; columns: those of `groups.summary`, with x and hue by their own names,
-    bound, and published.
+    """Return one row per bar.
 
-    bound is the mean exact shortest length of the problems of a bar's feasible runs (those that
-    count for a length), in units; empty for metrics that it does not bound. published is the number
-    that the paper prints, if it prints one.
+    Columns of `groups.compute_summary` come first, with x and hue by their own names, then bound
+    and published. bound is the mean exact shortest length of the problems of a bar's feasible runs
+    (those that count for a length), in units; it is empty for metrics that it does not bound.
+    published is the printed number, if there is one.
 
     Raises KeyError for an unknown metric or column.
     """
     keys, metric, statistic = [options.x, options.hue], options.metric, options.statistic
-    frame = summary(results, keys, metric, statistic)
+    frame = compute_summary(results, keys, metric, statistic)
     runs = results.runs.sort_values("id")
     groups = dict(iter(runs.groupby(keys)))
     bounds = runs[runs["feasible"]].groupby(keys)["bound"].mean() if metric in _BOUNDED else {}
     bars = list(zip(frame[options.x], frame[options.hue]))
     theirs = [
-        published(results._replace(runs=groups[bar]), metric, options.printed, statistic)
+        find_published(results._replace(runs=groups[bar]), metric, options.printed, statistic)
         for bar in bars
     ]
     return frame.assign(
@@ -73,9 +79,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in the order of the panel's `where`."""
     x, hue, labels = options.x, options.hue, scene.labels
-    places = style.in_order(frame[x], options.where)
+    places = style.list_in_order(frame[x], options.where)
     names = [labels.get(at, at) if isinstance(at, str) else f"{at:g}" for at in places]
-    groups = style.groups(frame, hue, options.where, scene)
+    groups = style.list_groups(frame, hue, options.where, scene)
     width = _WIDTH / len(groups)
     for number, (_, rows, look) in enumerate(groups):
         at = rows[x].map(places.index) + width * (number + 0.5) - _WIDTH / 2
@@ -96,8 +102,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         middles = np.array([places.index(name) for name in bounds.index])
         label = "exact shortest path"
         axes.hlines(bounds, middles - 0.45, middles + 0.45, label=label, **style.BOUND)
-    style.name_places(axes, names, axis_label(x, scene))
+    style.name_places(axes, names, describe_axis(x, scene))
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_box_aspect(_HEIGHT)
     show_metric(axes, options.metric, scene, options.statistic, options.scale)
-    return Note("", runs_note(frame, options.statistic, "bar"))
+    return Note("", describe_runs(frame, options.statistic, "bar"))

@@ -14,15 +14,15 @@ from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
-    axis_label,
-    constants,
-    grouped,
-    limits,
-    measured,
-    published,
-    runs_note,
+    add_metric,
+    collect_rows,
+    describe_axis,
+    describe_runs,
+    find_constants,
+    find_limits,
+    find_published,
+    list_values,
     show_metric,
-    values,
 )
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column, Number
@@ -58,41 +58,42 @@ class Options(MetricPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per part of a box; columns: those of `groups.grouped` by `by`, part, value.
+    """Return one row per part of a box.
 
-    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value
-    beyond the whiskers; mean; published, the mean that the paper prints, and published_end, the
-    least and the largest value that it prints. Values are in the metric's unit, for runs that have
-    the metric. A group without such runs has a row: none. Rows without a group: limit; and, with
-    context, reference (the best known path of the kind) and bound (the exact shortest length), each
-    if all runs share it.
+    Columns of `groups.collect_rows` by `by` come first, then part and value. Parts: low and high
+    (ends of whiskers), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean;
+    published, the mean that the paper prints, and published_end, the least and the largest value
+    that it prints. Values are in the metric's unit, of runs that have the metric. A group that has
+    no such run has one row with the part none. Rows of no group: limit; and, with context,
+    reference (the best known path of the kind) and bound (the exact shortest length), each if all
+    runs share it.
 
     Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
-    def rows(group: Results) -> Iterable[dict[str, Any]]:
-        parts = _box(values(group)) or [("none", np.nan)]
+    def list_rows(group: Results) -> Iterable[dict[str, Any]]:
+        parts = _compute_box(list_values(group)) or [("none", np.nan)]
         for part, statistic in (
             ("published", "mean"),
             ("published_end", "min"),
             ("published_end", "max"),
         ):
-            theirs = published(group, options.metric, options.printed, statistic)
+            theirs = find_published(group, options.metric, options.printed, statistic)
             parts += [(part, value) for value in theirs]
         return [{"part": part, "value": value} for part, value in parts]
 
-    lines = limits(results.runs) if options.context else {}
+    lines = find_limits(results.runs) if options.context else {}
     if options.limit is not None:
         lines["limit"] = options.limit
-    shared = constants(results.runs)
-    boxes = grouped(measured(results, options.metric), [options.by], rows)
+    shared = find_constants(results.runs)
+    boxes = collect_rows(add_metric(results, options.metric), [options.by], list_rows)
     alone = pd.DataFrame([shared | {"part": part, "value": value} for part, value in lines.items()])
     return pd.concat([boxes, alone], ignore_index=True) if lines else boxes
 
 
-def _box(numbers: np.ndarray) -> list[tuple[str, float]]:
-    """Parts of the box of sorted values (n,) and their positions; none without values."""
+def _compute_box(numbers: np.ndarray) -> list[tuple[str, float]]:
+    """Compute the parts of the box of sorted values (n,), none if there are no values."""
     if not len(numbers):
         return []
     first, median, third = np.quantile(numbers, [0.25, 0.5, 0.75])
@@ -108,7 +109,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     import seaborn as sns
 
     by = options.by
-    order = style.in_order(frame[by], options.where)
+    order = style.list_in_order(frame[by], options.where)
     look = {"color": style.LIGHT_BLUE, "linecolor": style.BLUE, "linewidth": 0.7, "width": 0.6}
     box = frame[frame["part"].isin(_BOX)]
     with warnings.catch_warnings(action="ignore"):  # seaborn passes what matplotlib will drop
@@ -122,7 +123,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         label = f"published limit: {format_amount(format(options.limit, 'g'), scene.unit)}"
         axes.axhline(options.limit, zorder=1.5, label=label, **style.PUBLISHED)
     names = [naming.format_value(group, by, scene.labels) for group in order]
-    style.name_places(axes, names, axis_label(by, scene))
+    style.name_places(axes, names, describe_axis(by, scene))
     show_metric(axes, options.metric, scene, scale=options.scale)
     where = "method" if by == "method" else "place"
-    return Note("", runs_note(frame.dropna(subset=[by]), "box", where))
+    return Note("", describe_runs(frame.dropna(subset=[by]), "box", where))

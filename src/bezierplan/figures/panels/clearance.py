@@ -1,5 +1,5 @@
-"""How near obstacles come to a robot in a world that moves: the least distance in each step of a
-drive, a line for each method.
+"""The least distance to an obstacle in each step of a drive in a world that moves, as a line for
+each method.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, only
+from bezierplan.figures.panels import Note, RunsPanel, find_only
 from bezierplan.schema.model import Repeat
 
 if TYPE_CHECKING:
@@ -31,15 +31,18 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per step; columns: problem, method, run (its id), step (its end), clearance (least
-    distance to an obstacle in it, in units, negative inside a circle), arrived. Raises ValueError
-    for runs of several problems.
+    """Return one row per step of the drives, which run again.
+
+    Columns: problem, method, run (its id), step (its end), clearance (least distance to an obstacle
+    in it, in units, negative inside a circle), arrived.
+
+    Raises ValueError for runs of several problems.
     """
     import pandas as pd
 
     from bezierplan.running import execution
 
-    problem = only(results.runs, "problem")
+    problem = find_only(results.runs, "problem")
     place = results.problems[problem], results.worlds[problem]
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
@@ -57,7 +60,8 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    for _, own, look in style.groups(frame, "method", options.where, scene):
+    """Draw a line for each method; a hollow mark ends a drive that does not arrive."""
+    for _, own, look in style.list_groups(frame, "method", options.where, scene):
         bare = look | {"marker": "", "linewidth": 1.0, "label": None}
         axes.plot(own["step"], own["clearance"], **bare)
         end, arrived = own[-1:], bool(own["arrived"].iloc[-1])

@@ -1,4 +1,4 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or one
+"""The best objective of each generation: one chosen run with median and spread of all runs, or one
 line per method or value of a factor.
 
 A study's label of `generation` names the axis, such as `iteration` for a swarm.
@@ -16,14 +16,14 @@ from bezierplan.analysis import naming, statistics
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
-    grouped,
-    limits,
-    published,
-    runs_note,
+    collect_rows,
+    describe_runs,
+    find_limits,
+    find_published,
     show_metric,
 )
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
-from bezierplan.figures.panels.paths import feasible_note, picked, run_note
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
+from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
 from bezierplan.workspaces.seeds import generator
 
@@ -64,12 +64,13 @@ class Options(RunsPanel):
 
     @property
     def one(self) -> tuple[str, ...]:
-        """Columns of which the runs have one value, if one of them is picked."""
+        """Return the columns in which the runs have one value, if one of them is chosen."""
         return ("problem", "method") if self.pick else ()
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
-        exactly_one(self, "pick", "hue")
+        """Refuse both or neither of pick and hue, and keys that need hue."""
+        require_one(self, "pick", "hue")
         for key in {"statistic", "printed"} & self.model_fields_set:
             if self.hue is None:
                 raise build_error(f"{key}: needs hue")
@@ -77,19 +78,18 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per generation, and with `hue` also per value of it. A run that stopped early keeps
-    its last objective.
+    """Return one row per generation, and with `hue` also per value of it.
 
-    Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact
-    shortest length.
+    A run that stopped early keeps its last objective. Objectives are the planner's own, in units,
+    over all runs, feasible or not; bound is the exact shortest length.
 
-    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty
-    without one), median, quartile1 and quartile3, bound. With `hue`, columns: those of
-    `groups.grouped`, generation, objective (the statistic), low95 and high95 (its 95 % bootstrap
-    interval), bound (empty if problems differ in it). With `context`, a column reference: the
-    length of the best known path of the methods' own kind, empty if problems differ in it. With
-    `printed`, a column of that name: the mean that this published table has for a group, in the row
-    of the last generation.
+    With `pick`, columns of `paths.choose_run` come first, then generation, objective (of the chosen
+    run; empty if there is none), median, quartile1 and quartile3, bound. With `hue`, columns of
+    `groups.collect_rows` come first, then generation, objective (the statistic), low95 and high95
+    (its 95 % bootstrap interval), bound (empty if problems differ in it). With `context`, a column
+    reference: the length of the best known path of the methods' own kind, empty if problems differ
+    in it. With `printed`, a column of that name: the mean that this published table has for a
+    group, in the row of the last generation.
 
     Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless
     all runs are of one problem and one method.
@@ -98,11 +98,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     generations = max(
         runs["history"].map(len).max(), -1 if options.until is None else options.until + 1
     )
-    shared = limits(runs)
+    shared = find_limits(runs)
     if options.pick is not None:
-        frame = _of_one_run(results, options.pick, generations)
+        frame = _build_rows_of_run(results, options.pick, generations)
     else:
-        frame = grouped(results, [options.hue], lambda own: _of_group(own, options, generations))
+        frame = collect_rows(
+            results, [options.hue], lambda own: _build_rows_of_group(own, options, generations)
+        )
         theirs = frame.pop("printed")
         frame["bound"] = shared.get("bound", np.nan)
         if options.printed is not None and results.published is not None:
@@ -112,14 +114,15 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     return frame
 
 
-def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
+def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
+    """Return the history of a chosen run beside the quartiles of all runs."""
     import pandas as pd
 
-    run, names = picked(results, pick)
+    run, names = choose_run(results, pick)
     low, median, high = np.quantile(
-        _histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
+        _extend_histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
     )
-    own = np.nan if run is None else _histories(run.to_frame().T, generations)[0]
+    own = np.nan if run is None else _extend_histories(run.to_frame().T, generations)[0]
     drawn = {
         "generation": range(generations),
         "objective": own,
@@ -131,17 +134,21 @@ def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     return pd.DataFrame(names | drawn)
 
 
-def _of_group(group: Results, options: Options, generations: int) -> Iterable[dict[str, Any]]:
-    """Each generation of a group, with the interval of its statistic from the same draws of
-    runs.
+def _build_rows_of_group(
+    group: Results, options: Options, generations: int
+) -> Iterable[dict[str, Any]]:
+    """Yield each generation of a group with the interval of its statistic.
+
+    All generations use the same draws of runs, so that the ends of the interval are smooth lines.
     """
     statistic, hue = options.statistic, options.hue
-    histories = _histories(group.runs, generations)
+    histories = _extend_histories(group.runs, generations)
     name = f"convergence/{hue}={group.runs[hue].iloc[0]}"
     centres = statistics.STATISTICS[statistic](histories.T)
-    theirs = published(group, "objective", options.printed)
+    theirs = find_published(group, "objective", options.printed)
     ends = np.nan, np.nan
     for number, column in enumerate(histories.T):
+        # Equal objectives have equal intervals: they are not resampled.
         if number == 0 or not np.array_equal(column, histories[:, number - 1]):
             ends = statistics.compute_interval(statistic, column, generator(name))
         last = theirs and number == generations - 1
@@ -154,8 +161,8 @@ def _of_group(group: Results, options: Options, generations: int) -> Iterable[di
         }
 
 
-def _histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
-    """Histories (runs, generations), each extended with its last value."""
+def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
+    """Return histories (runs, generations), each extended with its last value."""
     return np.array(
         [
             np.pad(history, (0, generations - len(history)), mode="edge")
@@ -166,6 +173,7 @@ def _histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the histories with the limits that all runs share."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(naming.name_column("generation", scene.labels))
@@ -177,10 +185,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame, context=options.context)
     show_metric(axes, "objective", scene)
-    return Note("", run_note(frame, feasible_note(frame)))
+    return Note("", describe_run(frame, describe_feasible_runs(frame)))
 
 
 def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
+    """Draw the history of a run, with context over the spread of all runs."""
     generation = frame["generation"]
     if context:
         band = {"color": style.LIGHT_BLUE, "linewidth": 0, "label": "quartiles of all runs"}
@@ -192,7 +201,8 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    groups = style.groups(frame, options.hue, options.where, scene)
+    """Draw a line for each group, with as many intervals as stay legible."""
+    groups = style.list_groups(frame, options.hue, options.where, scene)
     for number, (_, rows, look) in enumerate(groups):
         step = max(1, len(rows) // _MARKS)
         first = number * step // len(groups)
@@ -203,6 +213,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             axes.fill_between(generation, rows["low95"], rows["high95"], zorder=1.5, **band)
         elif len(groups) <= _MOST_ENDS:
             last = rows.iloc[-1]
+            # Side by side, so that all can be seen.
             at = last["generation"] * (1 - 0.015 * (len(groups) - number))
             bar = {"color": look["color"], "linewidth": 1.1, "zorder": 3.5}
             axes.vlines(at, last["low95"], last["high95"], **bar)
@@ -216,4 +227,4 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
     show_metric(axes, "objective", scene, options.statistic)
-    return Note("", runs_note(frame, options.statistic, "line"))
+    return Note("", describe_runs(frame, options.statistic, "line"))

@@ -1,5 +1,5 @@
-"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace if
-the panel names one.
+"""A drawing made of marks: the steps of a procedure, drawn by a function of the study, over a
+workspace if the panel names one.
 """
 
 from __future__ import annotations
@@ -53,13 +53,12 @@ class Options(TablePanel):
 
 
 def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own
-    extra columns, in drawing order.
+    """Return one row per mark, or per point of a line or arrow, in drawing order.
 
-    mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line
-    and arrow (through the points of a group), dots (marks at x, y), text (at x, y). role: the
-    style: obstacle, start, target, first, second, third, accent, muted or note. label: its entry in
-    the legend; empty for none.
+    Columns: `COLUMNS` and the function's own extra columns. mark: cell (a box about x, y of a width
+    and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),
+    dots (marks at x, y), text (at x, y). role: the style: obstacle, start, target, first, second,
+    third, accent, muted or note. label: its entry in the legend; empty for none.
     """
     return marks.reindex(columns=[*COLUMNS, *marks.columns.difference(COLUMNS, sort=False)])
 
@@ -69,7 +68,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_aspect("equal")
     alone = options.workspace is None
     if not alone:
-        workspaces.draw_home(axes, scene.workspaces[options.workspace])
+        workspaces.draw_workspace(axes, scene.workspaces[options.workspace])
     # Groups of neighbouring rows, so that later rows of the table lie on top.
     names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
     changed = (names != names.shift()).cumsum()
@@ -88,7 +87,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
-    """Draw neighbouring rows of one mark, group and role."""
+    """Draw neighbouring rows that share mark, group and role."""
     import pandas as pd
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Circle, Rectangle
@@ -121,7 +120,7 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
 
 
 def _fit(axes: Axes, frame: pd.DataFrame) -> None:
-    """Show everything, with a small margin around it."""
+    """Set the limits of the axes to everything drawn and a small margin."""
     reach = frame["radius"].fillna(0).to_numpy()[:, None]
     half = frame[["width", "height"]].fillna(0).to_numpy() / 2 + reach
     places = frame[["x", "y"]].to_numpy()

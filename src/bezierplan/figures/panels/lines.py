@@ -11,11 +11,11 @@ from pydantic import Field, model_validator
 
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
-    axis_label,
-    published,
-    runs_note,
+    compute_summary,
+    describe_axis,
+    describe_runs,
+    find_published,
     show_metric,
-    summary,
 )
 from bezierplan.figures.panels import (
     MetricPanel,
@@ -23,7 +23,7 @@ from bezierplan.figures.panels import (
     RunsPanel,
     Sources,
     TablePanel,
-    exactly_one,
+    require_one,
 )
 from bezierplan.schema.model import (
     Column,
@@ -54,7 +54,7 @@ _MOST_JOINED = 100
 
 
 class Options(MetricPanel, TablePanel):
-    """Keys of a panel: of runs, or of a table."""
+    """Keys of a panel of lines, which are of runs or of a table."""
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     data: Function = Field(
@@ -76,22 +76,25 @@ class Options(MetricPanel, TablePanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
-        exactly_one(self, "experiment", "data")
+        """Refuse both or neither of experiment and data, and printed numbers of a table."""
+        require_one(self, "experiment", "data")
         if self.printed is not None and self.experiment is None:
             raise build_error("printed: needs experiment")
         return self
 
     def source(self, sources: Sources) -> Results | pd.DataFrame:
-        """Runs, or the rows of a table."""
+        """Return the runs, or the rows of a table."""
         return (RunsPanel if self.experiment else TablePanel).source(self, sources)
 
 
 def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per point; columns: hue (if one is given) and x, both by their own names; part
-    (statistic, published or value), value.
+    """Return one row per point.
 
-    For runs: the columns of `groups.summary` for the statistic. For a table: the column `metric`,
-    as is. Raises KeyError for an unknown metric or column.
+    Columns: hue (if one is given) and x, both by their own names; part (statistic, published or
+    value), value. Rows of runs have the columns of `groups.compute_summary` for the statistic. Rows
+    of a table have the column `metric` as it is.
+
+    Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -102,23 +105,24 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     theirs = [
         dict(zip(keys, key)) | {"part": "published", "value": value}
         for key, own in source.runs.groupby(keys)
-        for value in published(source._replace(runs=own), metric, options.printed)
+        for value in find_published(source._replace(runs=own), metric, options.printed)
     ]
-    ours = summary(source, keys, metric, options.statistic).assign(part="statistic")
+    ours = compute_summary(source, keys, metric, options.statistic).assign(part="statistic")
     return pd.concat([ours, pd.DataFrame(theirs)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw a line for each value of hue, with intervals and published means if it is of runs."""
     hue, x = options.hue, options.x
     if hue is None:
         # The look of the method of all runs.
         methods = frame["method"].dropna().unique() if "method" in frame else []
-        groups = [(None, frame, style.lines(list(methods) or [""], scene.looks)[0])]
+        groups = [(None, frame, style.choose_line_styles(list(methods) or [""], scene.looks)[0])]
     else:
-        groups = style.groups(frame, hue, options.where, scene)
+        groups = style.list_groups(frame, hue, options.where, scene)
     for _, rows, look in groups:
         if options.experiment is None:
-            axes.plot(rows[x], rows["value"], **_of_table(look, len(rows)))
+            axes.plot(rows[x], rows["value"], **_choose_style(look, len(rows)))
             continue
         parts = dict(iter(rows.groupby("part")))
         _draw_statistic(axes, parts["statistic"], x, look)
@@ -131,7 +135,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel(axis_label(x, scene))
+    axes.set_xlabel(describe_axis(x, scene))
     single = options.experiment is None or frame["n"].max() < 2
     statistic = "" if single else options.statistic
     axes.grid(visible=True)
@@ -144,12 +148,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     ]
     if np.nanmax(np.diff(ends, axis=0), initial=0) > _SEEN * axes.bbox.height:
         axes.plot([], [], **style.INTERVAL)
-    return Note("", runs_note(ours, options.statistic, "point"))
+    return Note("", describe_runs(ours, options.statistic, "point"))
 
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
-    """A line of marks with their intervals; hollow for statistics of the feasible runs alone, where
-    there are others: a method that rarely succeeds may have the best mean.
+    """Draw a line of marks with intervals.
+
+    Marks are hollow for statistics of feasible runs alone if there are other runs, because a method
+    that rarely succeeds may have the best mean.
     """
     axes.vlines(frame[x], frame["low95"], frame["high95"], color=look["color"], linewidth=0.8)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
@@ -160,8 +166,8 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None
         axes.plot([], [], label=style.HOLLOW_LABEL, **style.HOLLOW)
 
 
-def _of_table(look: dict, points: int) -> dict:
-    """The style of a line through the given number of points of a table: few are marked."""
+def _choose_style(look: dict, points: int) -> dict:
+    """Choose the style of a line of a table: the more points, the fewer marks."""
     if points > _MOST_JOINED:
         return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
     return look if points <= _FEW else look | {"marker": ""}

@@ -27,7 +27,9 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """The table of the runs, one row each: method, problem, condition, repeat and the metrics."""
+    """Return the table of the runs, one row each: method, problem, condition, repeat and the
+    metrics.
+    """
     from bezierplan.analysis import metrics
 
     runs = results.runs.sort_values("id")
@@ -40,6 +42,8 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Let the function draw; what it returns, if it does, belongs into the notes."""
-    looks = {name: look for name, _, look in style.groups(frame, "method", options.where, scene)}
+    """Let the study's function draw, and put the text that it may return into the notes."""
+    looks = {
+        name: look for name, _, look in style.list_groups(frame, "method", options.where, scene)
+    }
     return Note("", scene.functions[options.function](axes, frame, looks) or "")

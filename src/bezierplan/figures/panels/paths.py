@@ -1,7 +1,7 @@
-"""A path with its control points: that of a picked run, in its workspace next to the exact shortest
-path, or a given one.
+"""A path with its control points, either of a chosen run, in its workspace next to the exact
+shortest path, or a given one.
 
-Or several paths in one workspace, a picked run for each value of a column.
+Or several paths in one workspace, a run chosen for each value of a column.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import metrics
 from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
-from bezierplan.figures.groups import axis_label, counts, published
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, exactly_one, only
+from bezierplan.figures.groups import count_runs, describe_axis, find_published
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.schema.model import (
@@ -79,18 +79,19 @@ _CHANGED = {
 }
 
 
-def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
-    """The run that a panel shows, or None if there is none to pick, and its description in the
-    columns of the panel's csv file.
+def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
+    """Choose the run that a panel shows, and describe it in the columns of the panel's csv file.
 
-    Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run),
-    curve, length (in units), feasible. Raises ValueError unless all the panel's runs are of one
-    problem and one method.
+    Returns None in place of a run if there is none to choose. Columns: problem, method, runs and
+    feasible_runs (counts), run (its id; empty if there is none), curve, length (in units),
+    feasible.
+
+    Raises ValueError unless all the panel's runs are of one problem and one method.
     """
     from bezierplan.analysis.results import pick as pick_run
 
     runs = results.runs
-    names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
+    names = {column: find_only(runs, column) for column in ("problem", "method")} | count_runs(runs)
     if pick.having is not None:
         runs = runs[metrics.compute_values(runs, pick.having, results.problems) > 0]
     run = pick_run(runs, pick.plain("having", "layout"))
@@ -104,9 +105,10 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     }
 
 
-def run_note(frame: pd.DataFrame, *more: str) -> str:
-    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or
-    just that there is none.
+def describe_run(frame: pd.DataFrame, *more: str) -> str:
+    """Say which run a panel shows, or that there is none.
+
+    frame: with the columns of `choose_run`. more: other clauses about the run.
     """
     import pandas as pd
 
@@ -116,14 +118,14 @@ def run_note(frame: pd.DataFrame, *more: str) -> str:
     return "; ".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
 
 
-def feasible_note(frame: pd.DataFrame) -> str:
-    """How many of a panel's runs are feasible, from the columns that `picked` names."""
+def describe_feasible_runs(frame: pd.DataFrame) -> str:
+    """Say how many of a panel's runs are feasible, from the columns of `choose_run`."""
     row = frame.iloc[0]
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
 
 class Explicit(Model):
-    """A path without a run."""
+    """A path given by its points, not by a run."""
 
     curve: Literal[tuple(curves.CURVES)] = Field(description="the kind of a curve")
     points: list[Annotated[list[Number], of_length(2, "[x, y]")]] = Field(
@@ -132,8 +134,9 @@ class Explicit(Model):
 
 
 class Options(RunsPanel):
-    """Keys of a panel: of picked runs, or of an explicit path. With hue, `one` is meant for each of
-    its values.
+    """Keys of a panel of chosen runs or of an explicit path.
+
+    With hue, `one` is meant for each of its values.
     """
 
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
@@ -171,7 +174,7 @@ class Options(RunsPanel):
     )
 
     def source(self, sources: Sources) -> Results | None:
-        """Runs, of one layout if one is picked; nothing for an explicit path."""
+        """Return the runs, of one layout if one is chosen, or None for an explicit path."""
         from bezierplan.analysis.results import select
 
         if self.experiment is None:
@@ -185,25 +188,26 @@ class Options(RunsPanel):
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
-        exactly_one(self, "pick", "explicit")
-        exactly_one(self, "experiment", "explicit")
+        """Refuse a panel that is of a run and of an explicit path, or of neither."""
+        require_one(self, "pick", "explicit")
+        require_one(self, "experiment", "explicit")
         if "measure" in self.model_fields_set and self.hue is None:
             raise build_error("measure: needs hue")
         return self
 
 
 def data(results: Results | None, options: Options) -> pd.DataFrame:
-    """What is drawn of a path: one row per point, in the order in which points are joined.
+    """Return one row per point of a path, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound: the exact shortest path,
-    hull, control or points, path, collision: a path's first one, if any, and appeared and vanished:
-    centres of changed cells), x, y (in the workspace's unit). Without a run to show, only what
-    belongs to the problem. Only curves within their hull have one, and polylines and curves with
-    tangents no control points.
+    Rows of a run have the columns of `choose_run`. All have part (start, target, bound: the exact
+    shortest path, hull, control or points, path, collision: a path's first one, if any, and
+    appeared and vanished: centres of changed cells), x, y (in the workspace's unit). If there is no
+    run to show, only the problem's own rows. Only curves within their hull have one, and polylines
+    and curves with tangents no control points.
 
     With `hue`, paths are drawn without control points, and the column `measure` has each run's
     value of that metric. With `printed`, the column of this name has the shortest length of that
-    published table for the runs. Whatever the `view`, the rows include everything.
+    published table for the runs. The rows include everything, also beyond the `view`.
 
     Raises ValueError unless all runs, of one value of hue, are of one problem and one method, and
     if a curve cannot have such points.
@@ -216,8 +220,9 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
         ends = {"start": [start], "target": [target]}
-        return workspaces.places(ends | _parts(path, options.control))
+        return workspaces.list_points(ends | _list_parts(path, options.control))
     if options.hue is not None:
+        # Each value is a panel of one run.
         alone = options.but(hue=None, control="none")
         groups = results.runs.groupby(options.hue)
         frames = [
@@ -228,7 +233,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         by_run = numbers.groupby(results.runs["id"]).first()
         frame = pd.concat(frames, ignore_index=True)
         return frame.assign(measure=frame["run"].map(by_run))
-    run, names = picked(results, options.pick)
+    run, names = choose_run(results, options.pick)
     problem = results.problems[names["problem"]]
     places = {"start": [problem.start], "target": [problem.target]}
     if options.changed_from is not None:
@@ -240,20 +245,20 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             row, column = np.nonzero(cells.occupied & ~others.occupied)
             places[part] = cells.in_units(np.column_stack([column, row]) + 0.5)
     if options.printed is not None and results.published is not None:
-        printed = published(results, "length", options.printed, "min")
+        printed = find_published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
     path = None if run is None else build_path(run)
     if path is not None:
         if options.context:
             places["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        places |= _parts(path, options.control)
+        places |= _list_parts(path, options.control)
         if not run["feasible"]:
             places["collision"] = [curves.point_at(path, run["collision_at"])]
-    return workspaces.places(places).assign(**names)[[*names, "part", "x", "y"]]
+    return workspaces.list_points(places).assign(**names)[[*names, "part", "x", "y"]]
 
 
-def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
-    """Points (n, 2) of a path by the part that they form."""
+def _list_parts(path: Path, control: str) -> dict[str, np.ndarray]:
+    """Return the points (n, 2) of a path by the part that they form."""
     import shapely
 
     places = {}
@@ -261,11 +266,11 @@ def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
         places["control" if control == "all" else control] = path.points
         if path.curve in curves.B_SPLINES and control == "all":
             places["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
-    return places | {"path": steps(path)}
+    return places | {"path": sample_path(path)}
 
 
-def steps(path: Path) -> np.ndarray:
-    """Points (n, 2) along a path, close enough to look smooth."""
+def sample_path(path: Path) -> np.ndarray:
+    """Return points (n, 2) along a path, close enough to look smooth."""
     pieces = len(curves.bezier_pieces(path))
     steps = pieces * max(1, _STEPS // pieces)
     return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
@@ -275,20 +280,20 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in their workspace if they have one."""
     note, unit = Note(), scene.unit
     if options.explicit is not None:
-        workspaces.scale(axes, unit)
+        workspaces.label_axes(axes, unit)
         axes.set_aspect("equal")
         axes.margins(0.06)
     else:
-        home = options.home(frame, scene)
+        home = options.find_workspace(frame, scene)
         unit = home.unit
-        workspaces.draw_home(axes, home)
+        workspaces.draw_workspace(axes, home)
         _draw_changes(axes, frame, home)
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
         style.draw_parts(axes, frame, LOOK, clip_on=options.view is not None)
         if options.explicit is None:
-            note = _note(frame, unit)
+            note = _write_note(frame, unit)
     workspaces.draw_letters(axes, frame, options.letters)
     if options.view is not None:
         axes.axis(options.view)
@@ -296,7 +301,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
-    """Mark cells that differ from those of another problem."""
+    """Draw the cells that differ from those of another problem."""
     for part, look in _CHANGED.items():
         cells = frame[frame["part"] == part]
         if len(cells):
@@ -305,10 +310,11 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the paths of all values of hue, each in its own style, and what belongs to their problem
-    once; returns their measures.
+    """Draw the paths of all values of hue, each in its own style, and their problem once.
+
+    Returns a note with their measures.
     """
-    groups = style.groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options.where, scene)
     clauses = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(groups))
@@ -323,22 +329,22 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     there = frame.loc[frame["part"] == "path", options.hue].nunique()
     return Note(
         "" if there == len(groups) else f"{there} of {len(groups)} have a path",
-        f"{axis_label(options.measure, scene)}: {', '.join(clauses)}",
+        f"{describe_axis(options.measure, scene)}: {', '.join(clauses)}",
     )
 
 
-def _note(frame: pd.DataFrame, unit: str) -> Note:
-    """The length of the path; for the notes its run, and what else there is to say of it."""
+def _write_note(frame: pd.DataFrame, unit: str) -> Note:
+    """Return the length of the path as a heading, and clauses on its run for the caption."""
     row, parts = frame.iloc[0], set(frame["part"])
     if "path" not in parts:
-        return Note("no path", run_note(frame, "no path"))
+        return Note("no path", describe_run(frame, "no path"))
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
     clauses = []
     if len(control):
         clauses = [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
-    clauses.append(feasible_note(frame))
+    clauses.append(describe_feasible_runs(frame))
     if np.isfinite(row.get("printed", np.nan)):
         clauses.append(f"shortest printed {format_amount(format(row['printed'], '.2f'), unit)}")
     return Note(
-        f"length {format_amount(format(row['length'], '.2f'), unit)}", run_note(frame, *clauses)
+        f"length {format_amount(format(row['length'], '.2f'), unit)}", describe_run(frame, *clauses)
     )

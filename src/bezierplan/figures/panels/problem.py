@@ -1,4 +1,4 @@
-"""A problem: its workspace with start and target, without any path."""
+"""A problem: its workspace with start and target, and no path."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ class Options(Panel):
     letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
 
     def source(self, sources: Sources) -> Problem:
-        """The problem."""
+        """Return the problem that the panel names."""
         return sources.problems[self.problem]
 
 
 def data(problem: Problem, options: Options) -> pd.DataFrame:
-    """Start and target: part, x, y, problem (its name)."""
-    return workspaces.ends(problem).assign(problem=problem.name)
+    """Return the rows of start and target: part, x, y, problem (its name)."""
+    return workspaces.list_ends(problem).assign(problem=problem.name)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data` in their workspace."""
-    workspaces.draw_home(axes, scene.places[options.problem].workspace)
+    workspaces.draw_workspace(axes, scene.places[options.problem].workspace)
     style.draw_parts(axes, frame, workspaces.ENDS, clip_on=False)
     workspaces.draw_letters(axes, frame, options.letters)
     return Note()

@@ -1,5 +1,5 @@
-"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far,
-the current plan, dropped plans.
+"""One moment of a drive in a world that moves: obstacles and their velocity, the way so far, the
+current plan and dropped plans.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, only
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, find_only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import build_value_type, is_number
 
@@ -62,24 +62,26 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, method, run (its id), time (of the
-    moment, in steps), part, number, x, y, size, x_velocity, y_velocity (units per step).
+    """Return one row per place at the moment of a drive, which runs again.
 
-    Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force);
-    dropped (earlier plans, by number); collision (places of first collisions up to the moment).
+    Columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y,
+    size, x_velocity, y_velocity (units per step). Parts are all of `workspace.data`, and start,
+    target; way (driven so far); robot; plan (in force); dropped (earlier plans, by number);
+    collision (places of first collisions up to the moment).
+
     Raises ValueError for runs of several problems or methods, and if no run is found.
     """
     from bezierplan.analysis.results import pick as picked
     from bezierplan.running import execution
 
     for column in ("problem", "method"):
-        only(results.runs, column)
+        find_only(results.runs, column)
     run = picked(results.runs, options.pick.plain())
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
     ride, verdict = execution.drive_again(results.jobs[run["method"]], run, problem, world)
-    frame = moment(world, problem, ride, verdict, options.at)
+    frame = build_moment(world, problem, ride, verdict, options.at)
     return frame.assign(
         problem=run["problem"],
         method=run["method"],
@@ -88,8 +90,10 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     )
 
 
-def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
-    """Rows of a moment, a share of the time of a drive."""
+def build_moment(
+    world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float
+) -> pd.DataFrame:
+    """Return the rows of a moment. at: the moment, as a share of the time of the drive."""
     import pandas as pd
 
     from bezierplan.running.simulation.motion_check import cut_motion
@@ -109,7 +113,7 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         parts = [corners, circles]
     else:
         grid = world.workspace(time)
-        parts, bounds = [workspaces.parts(grid)], grid.bounds
+        parts, bounds = [workspaces.list_parts(grid)], grid.bounds
     driven = cut_motion(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
     places = [("way", driven), ("robot", driven[-1:])]
     plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
@@ -120,14 +124,16 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         hit = cut_motion(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         places.append(("collision", hit))
     for number, (part, points) in enumerate(places):
-        own = workspaces.places({part: points})
+        # Way and robot stand before the plans, which are numbered from 0.
+        own = workspaces.list_points({part: points})
         parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
-    return pd.concat([*parts, workspaces.ends(problem)], ignore_index=True)
+    return pd.concat([*parts, workspaces.list_ends(problem)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    workspaces.shade(axes, frame)
-    workspaces.scale(axes, options.home(frame, scene).unit)
+    """Draw the moment, with an arrow at each circle that moves."""
+    workspaces.draw_shapes(axes, frame)
+    workspaces.label_axes(axes, options.find_workspace(frame, scene).unit)
     circles = frame[frame["part"] == "circle"]
     if len(circles):
         arrows = _ARROW_STEPS * circles[["x_velocity", "y_velocity"]].to_numpy()

@@ -1,8 +1,9 @@
-"""What a method adds to the baseline: excess length against the tightest bend, in which the exact
-shortest path with rounded corners is a line over all turning radii, or against CPU time.
+"""The excess length of methods against their tightest bend, in which the exact shortest path with
+rounded corners is a line over all turning radii, or against CPU time: it shows if a method adds
+anything to this baseline.
 
 A panel is of one problem, or of a family of drawn ones: then a point is the median of the problems'
-medians, and of the line at each radius. A path with corners bends without limit: it enters no
+medians, and so is the line at each radius. A path with corners bends without limit: it enters no
 median, but is counted; only where all have corners the median is of their excess.
 """
 
@@ -17,7 +18,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.figures import style
-from bezierplan.figures.groups import axis_label, counts
+from bezierplan.figures.groups import count_runs, describe_axis
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
@@ -66,41 +67,43 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row a method, and one a radius of the line.
+    """Return one row a method, and one a radius of the line.
 
-    Columns: part (method or line); of methods: method, runs and feasible_runs (counts), free (share
-    of paths that the certified checker accepts), cornered (free paths with corners), problems, and
-    against bend adds, in how many problems no point of the line is as short and as smooth as the
-    method: as the lower ends of its intervals or, in a family, as its medians; none for the
-    baseline; of the line: radius, in units; x, y (medians) and x_low, x_high, y_low, y_high (their
-    95 % bootstrap intervals, those of a single number at it).
+    Columns: part (method or line). Methods have method, runs and feasible_runs (counts), free
+    (share of paths that the certified checker accepts), cornered (free paths with corners),
+    problems, and against bend adds: the number of problems in which no point of the line is as
+    short and as smooth as the method. There the method counts with the lower ends of its intervals
+    or, in a family, with its medians; the baseline has no such number. The line has radius, in
+    units. Both have x, y (medians) and x_low, x_high, y_low, y_high (their 95 % bootstrap
+    intervals, those of a single number at it).
     """
     import pandas as pd
 
     runs = results.runs.sort_values("id")
     of_bend = options.x == "bend"
     runs = runs.assign(
-        x=_bends(runs) if of_bend else runs["cpu_s"],
+        x=_measure_bends(runs) if of_bend else runs["cpu_s"],
         y=metrics.compute_values(runs, "gap", results.problems),
     )
     bounds = runs.groupby("problem")["bound"].first()
-    lines = _lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
+    lines = _compute_lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
     rows: list[dict[str, Any]] = [
-        {"part": "line", "radius": radius} | _middle(own[["x", "y"]].to_numpy(), f"{radius}")
+        {"part": "line", "radius": radius}
+        | _compute_medians(own[["x", "y"]].to_numpy(), f"{radius}")
         for radius, own in lines.groupby("radius")
     ]
     for method, of_method in runs.groupby("method"):
         places = {
-            name: _middle(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
+            name: _compute_medians(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
             for name, few in of_method.groupby("problem")
         }
         medians = np.array([[place["x"], place["y"]] for place in places.values()])
-        row = {"part": "method", "method": method, "problems": len(places)} | counts(of_method)
+        row = {"part": "method", "method": method, "problems": len(places)} | count_runs(of_method)
         row |= {
             "free": of_method["feasible"].mean(),
             "cornered": int(np.isposinf(of_method["x"]).sum()),
         }
-        row |= _middle(medians, f"{options.x}/{method}") if len(places) > 1 else {}
+        row |= _compute_medians(medians, f"{options.x}/{method}") if len(places) > 1 else {}
         row |= next(iter(places.values())) if len(places) == 1 else {}
         if of_bend and of_method["planner"].iloc[0] != _BASELINE:
             round_paths = np.isfinite(of_method["x"])
@@ -111,7 +114,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
                 bend, excess = place[f"x{end}"], place[f"y{end}"]
                 # Of all points of the line that are as smooth, the shortest.
                 radius = 1.001 / bend if bend > 0 else math.inf
-                point = _rounded(results.problems[name], bounds[name], radius)
+                point = _round_shortest_path(results.problems[name], bounds[name], radius)
                 line = lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy()
                 row["adds"] += adds(np.vstack([line, point]), bend, excess, often[name])
         rows.append(row)
@@ -119,14 +122,16 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def adds(line: np.ndarray, bend: float, excess: float, often: float) -> bool:
-    """Return whether a method adds something: no point (bend, excess) of the line (n, 2) is as
-    smooth and as short, and its paths are often free and without corners, the share given.
+    """Return True if a method adds something to the line.
+
+    No point (bend, excess) of the line (n, 2) is then as smooth and as short, and its paths are
+    often free and without corners. often: the share of such paths.
     """
     as_good = (line[:, 0] <= bend) & (line[:, 1] <= excess + _EQUAL)
     return bool(often >= _OFTEN_FREE and not as_good.any())
 
 
-def _bends(runs: pd.DataFrame) -> np.ndarray:
+def _measure_bends(runs: pd.DataFrame) -> np.ndarray:
     """Return the largest curvature (n,) of each free path, infinite with corners, NaN of others."""
     from bezierplan.analysis.results import build_path
     from bezierplan.geometry.tightest_turn import largest_curvature
@@ -141,28 +146,34 @@ def _bends(runs: pd.DataFrame) -> np.ndarray:
     )
 
 
-def _lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
-    """Return the rounded shortest paths: problem, radius that is asked, x (bend) and y (excess);
-    from a sharp path to the roundest, at the same radii in all problems.
+def _compute_lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
+    """Compute the rounded shortest paths, from a sharp one to the roundest, at the same radii in
+    all problems.
+
+    Columns: problem, radius that is asked, x (bend) and y (excess). wanted: if False, there are no
+    rows.
     """
     import pandas as pd
 
-    def point(name: str, radius: float) -> tuple[str, float, float, float]:
-        return name, radius, *_rounded(problems[name], bounds[name], radius)
+    def build_point(name: str, radius: float) -> tuple[str, float, float, float]:
+        return name, radius, *_round_shortest_path(problems[name], bounds[name], radius)
 
     names = list(problems) if wanted else []
-    rows = [point(name, math.inf) for name in names]
+    rows = [build_point(name, math.inf) for name in names]
+    # The roundest path of a problem tells which radii fit.
     widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
     low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high or low)) + 1)
     ladder = [float(f"{part}e{power}") for power in decades for part in _RADII]
     radii = [0.0, *(radius for radius in ladder if low <= radius <= high)]
-    rows += [point(*each) for each in itertools.product(names, radii)]
+    rows += [build_point(*each) for each in itertools.product(names, radii)]
     return pd.DataFrame(rows, columns=["problem", "radius", "x", "y"])
 
 
-def _rounded(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
-    """Return tightest bend and excess of the shortest path rounded by a radius, NaN without one."""
+def _round_shortest_path(problem: Problem, bound: float, radius: float) -> tuple[float, float]:
+    """Return tightest bend and excess of the shortest path rounded by a radius, NaN if there is
+    none.
+    """
     from bezierplan.geometry.tightest_turn import largest_curvature
     from bezierplan.planners import rounded_shortest_path
 
@@ -176,9 +187,10 @@ def _rounded(problem: Problem, bound: float, radius: float) -> tuple[float, floa
     return bend, plan.objective / bound - 1
 
 
-def _middle(points: np.ndarray, name: str) -> dict[str, float]:
-    """Return medians of points (n, 2) with their intervals, without those that bend without limit
-    unless all do.
+def _compute_medians(points: np.ndarray, name: str) -> dict[str, float]:
+    """Return medians of points (n, 2) with their intervals.
+
+    Points that bend without limit are left out unless all do.
     """
     bounded = points[np.isfinite(points[:, 0])]
     middle_of = {}
@@ -193,12 +205,13 @@ def _middle(points: np.ndarray, name: str) -> dict[str, float]:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Draw the line and a mark with intervals for each method."""
     of_bend = options.x == "bend"
-    placed, sides, edges = _with_edges(frame)
-    groups = style.groups(placed[placed["part"] == "method"], "method", options.where, scene)
+    placed, sides, edges = _place_at_edges(frame)
+    groups = style.list_groups(placed[placed["part"] == "method"], "method", options.where, scene)
     line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
     axes.set_xlim(sides)
-    style.measure(axes.xaxis, "log", "" if of_bend else "s")
+    style.scale_axis(axes.xaxis, "log", "" if of_bend else "s")
     top = 1.5 * np.nanmax(placed[["y", "y_high"]].to_numpy(), initial=_EQUAL)
     axes.set_yscale("symlog", linthresh=_LINEAR)
     axes.set_ylim(-0.1 * min(top, _LINEAR), top)
@@ -232,15 +245,16 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
                 text, (x, y), _BESIDE, textcoords="offset points", fontsize="x-small", color=colour
             )
     bend = f"tightest bend (1/{scene.unit})"
-    axes.set_xlabel(bend if of_bend else axis_label("cpu_s", scene))
-    axes.set_ylabel(axis_label("gap", scene))
+    axes.set_xlabel(bend if of_bend else describe_axis("cpu_s", scene))
+    axes.set_ylabel(describe_axis("gap", scene))
     axes.grid(visible=True)
-    return _note(frame[frame["part"] == "method"], scene)
+    return _write_note(frame[frame["part"] == "method"], scene)
 
 
-def _with_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
-    """Return the table with straight paths, and those that bend like corners, at the edges of a
-    logarithmic axis; the ends of the axis; and the names of edges at which something stands.
+def _place_at_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
+    """Move straight paths, and those that bend like corners, to the edges of a logarithmic axis.
+
+    Returns the table; the ends of the axis; and the names of edges at which something stands.
     """
     numbers = frame[["x", "x_low", "x_high"]].where(frame["y"].notna())
     inside = numbers.to_numpy()[np.isfinite(numbers) & (numbers > 0)]
@@ -264,21 +278,24 @@ def _describe_paths(row: pd.Series) -> str:
     return ", ".join(filter(None, [free, corners]))
 
 
-def _note(table: pd.DataFrame, scene: Any) -> Note:
-    """Say what the panel shows, and which methods add something."""
+def _write_note(table: pd.DataFrame, scene: Any) -> Note:
+    """Say how to read the marks, and which methods add something."""
     several = bool(table["problems"].max() > 1)
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside a mark the share of paths that are free, where not all are")
     if none := [*table["method"][table["free"] == 0]]:
-        said.append(f"no free path: {_listed(none, scene)}")
+        said.append(f"no free path: {_list_methods(none, scene)}")
     if "adds" in table and table["adds"].notna().any():
         adding = table[table["adds"] > 0]
         fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
         where = fields if several else itertools.repeat("")
-        said.append(f"adds something: {_listed(adding['method'], scene, where) or 'none'}")
+        said.append(f"adds something: {_list_methods(adding['method'], scene, where) or 'none'}")
     return Note("", "; ".join(said))
 
 
-def _listed(methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")) -> str:
+def _list_methods(
+    methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")
+) -> str:
+    """Return printed names of methods, each with more words behind it."""
     printed = (naming.format_value(method, "method", scene.labels) for method in methods)
     return ", ".join(name + beside for name, beside in zip(printed, more))

@@ -1,4 +1,4 @@
-"""A workspace: cells with their numbers, circles or polygons, without any path."""
+"""A workspace: cells with their numbers, circles or polygons, and no path."""
 
 from __future__ import annotations
 
@@ -85,20 +85,18 @@ class Options(Panel):
     )
 
     def source(self, sources: Sources) -> Workspace:
-        """The workspace."""
+        """Return the workspace that the panel names."""
         return sources.workspaces[self.workspace]
 
 
 def data(workspace: Workspace, options: Options) -> pd.DataFrame:
-    """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or
-    point of a ring.
+    """Return one row per corner of a workspace's bounds, cell, circle, or point of a ring, in its
+    unit.
 
-    Large grids list no free cells unless they show numbers.
-
-    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's
-    centre), size (a cell's side, a circle's radius), obstacle and ring (polygons only), number (of
-    the cells that show it; see `workspaces.grid`), height (of the cells of a grid with heights, in
-    its unit).
+    Large grids list no free cells unless they show numbers. Columns: part (corner, free, occupied,
+    surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
+    radius), obstacle and ring (polygons only), number (of the cells that show it; see
+    `workspaces.grid`), height (of the cells of a grid with heights, in its unit).
 
     Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
@@ -108,31 +106,31 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
             if options.embed
             else workspace
         )
-        return _table(whole.bounds, _cells(whole, workspace, options.numbers))
+        return _build_table(whole.bounds, _list_cells(whole, workspace, options.numbers))
     if options.numbers != "none" or options.embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
-    return parts(workspace)
+    return list_parts(workspace)
 
 
-def parts(workspace: Workspace) -> pd.DataFrame:
-    """What is drawn of a workspace itself, without numbers: rows as in `data`."""
+def list_parts(workspace: Workspace) -> pd.DataFrame:
+    """Return the rows of a workspace itself, as `data` does, but no numbers."""
     shapes, drawn = workspace, []
     if isinstance(workspace, Grid):
         shapes = workspace.shapes
         if not shapes or workspace.occupied.size <= _MOST_CELLS:
-            drawn.append(_cells(workspace, workspace, "none"))
+            drawn.append(_list_cells(workspace, workspace, "none"))
     if shapes:
-        drawn.append(_shapes(shapes))
-    return _table(workspace.bounds, *drawn)
+        drawn.append(_list_shapes(shapes))
+    return _build_table(workspace.bounds, *drawn)
 
 
-def ends(problem: Problem) -> pd.DataFrame:
-    """Start and target of a problem, as `places` gives them."""
-    return places({"start": [problem.start], "target": [problem.target]})
+def list_ends(problem: Problem) -> pd.DataFrame:
+    """Return start and target of a problem as `list_points` gives them."""
+    return list_points({"start": [problem.start], "target": [problem.target]})
 
 
-def places(points: Mapping[str, Any]) -> pd.DataFrame:
-    """Points (n, 2) by part as rows: part, x and y."""
+def list_points(points: Mapping[str, Any]) -> pd.DataFrame:
+    """Return points (n, 2) by part as rows with part, x and y."""
     import pandas as pd
 
     tables = [
@@ -142,7 +140,8 @@ def places(points: Mapping[str, Any]) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True)[["part", "x", "y"]]
 
 
-def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
+def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
+    """Return the rows of circles, or of the rings of polygons."""
     import pandas as pd
 
     if isinstance(workspace, Circles):
@@ -158,9 +157,10 @@ def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
-def _table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
-    """The corners of the bounds and everything drawn within them, with all columns; heights only if
-    there are any.
+def _build_table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
+    """Join the corners of the bounds and all that is drawn within them, with all columns.
+
+    Heights are a column only if there are any.
     """
     import pandas as pd
 
@@ -169,11 +169,12 @@ def _table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
     return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
 
 
-def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
-    """Cells of a grid; those beyond its own part are surplus."""
+def _list_cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
+    """Return the cells of a grid, in which surplus ones lie beyond the map's own part."""
     import pandas as pd
 
     rows, columns = whole.occupied.shape
+    # Large grids are drawn by their occupied cells alone.
     hidden = numbers == "none" and whole.heights is None and rows * columns > _MOST_OUTLINES
     row, column = np.nonzero(whole.occupied | (not hidden))
     surplus = (row >= grid.occupied.shape[0]) | (column >= grid.occupied.shape[1])
@@ -190,18 +191,18 @@ def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`.
 
-    Cells that show their numbers need no scale: it would take up the room that keeps the numbers
-    legible.
+    Cells that show their numbers get no scale, because it would take up the room that keeps the
+    numbers legible.
     """
     unit = scene.workspaces[options.workspace].unit
-    shade(axes, frame)
+    draw_shapes(axes, frame)
     numbered = frame[frame["number"].notna()]
     # Narrow digits: three of them have to fit into a cell.
     look = {"family": "STIXGeneral", "ha": "center", "va": "center_baseline", "in_layout": False}
     for x, y, number in numbered[["x", "y", "number"]].to_numpy():
         axes.text(x, y, str(int(number)), **look)
     if numbered.empty:
-        scale(axes, unit)
+        label_axes(axes, unit)
         return Note()
     axes.set(xticks=[], yticks=[])
     side = f"{numbered['size'].iloc[0]:g}"
@@ -210,8 +211,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     )
 
 
-def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:
-    """Draw the workspace of what a panel shows, with its scale; more: as for `shade`."""
+def draw_workspace(axes: Axes, home: Workspace, **more: bool) -> None:
+    """Draw the workspace behind a panel, with its scale; more: see `draw_shapes`."""
     from matplotlib.colors import ListedColormap
 
     flat = isinstance(home, Grid) and not home.shapes and home.heights is None
@@ -220,11 +221,11 @@ def draw_home(axes: Axes, home: Workspace, **more: bool) -> None:
         colours = ListedColormap([style.FREE, style.OCCUPIED])
         axes.imshow(home.occupied, colours, origin="lower", extent=home.bounds, vmin=0, vmax=1)
     else:
-        shade(axes, parts(home), **more)
-    scale(axes, home.unit)
+        draw_shapes(axes, list_parts(home), **more)
+    label_axes(axes, home.unit)
 
 
-def scale(axes: Axes, unit: str) -> None:
+def label_axes(axes: Axes, unit: str) -> None:
     """Label the two coordinates of a workspace, with ticks at edges of cells of side 1."""
     axes.locator_params(nbins="auto", steps=[1, 2, 4, 5, 10])
     if np.abs([axes.get_xlim(), axes.get_ylim()]).max() >= 1e5:
@@ -249,10 +250,11 @@ def draw_letters(axes: Axes, frame: pd.DataFrame, letters: list[str] | None) -> 
         axes.annotate(letter, end, weight="bold", zorder=7, ha="center", va="center", **place)
 
 
-def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
-    """Draw the rows of `data` or `parts` to scale, without numbers or axis labels; only the
-    outlines of circles and polygons if something else fills the panel, such as the cells of a grid
-    drawn from them.
+def draw_shapes(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
+    """Draw the rows of `data` or `list_parts` to scale, without numbers or axis labels.
+
+    outlines: draw only outlines of circles and polygons, because other things fill the panel, such
+    as the cells of a grid drawn from them.
     """
     from matplotlib.collections import PatchCollection
 
@@ -266,7 +268,7 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or len(cells) else _OBSTACLE
-    if shapes := _shapes_of(frame):
+    if shapes := _build_patches(frame):
         obstacles = PatchCollection(shapes, label="obstacle", **look)
         axes.add_collection(obstacles, autolim=False)
 
@@ -286,18 +288,23 @@ def draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
-    """Shade free cells by their height; the legend names every height, or of many the lowest and
-    the highest.
+    """Draw free cells shaded by their height.
+
+    The legend names every height, or only the lowest and the highest if there are many.
     """
     low, high = cells["height"].min(), cells["height"].max()
     named = (low, high) if cells["height"].nunique() > _MOST_HEIGHTS else cells["height"].unique()
     for height, own in cells.groupby("height"):
-        look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
+        look = {
+            "facecolor": style.choose_ground_colour(
+                (height - low) / (high - low) if high > low else 0.0
+            )
+        }
         draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
 
 
-def _shapes_of(frame: pd.DataFrame) -> list[Patch]:
-    """Circles, then polygons."""
+def _build_patches(frame: pd.DataFrame) -> list[Patch]:
+    """Return patches of matplotlib for circles, then for polygons."""
     import shapely
     from matplotlib.patches import Circle
     from shapely.plotting import patch_from_polygon

@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.groups import axis_label
-from bezierplan.figures.panels import Note, RunsPanel, Sources, only
+from bezierplan.figures.groups import describe_axis
+from bezierplan.figures.panels import Note, RunsPanel, Sources, find_only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Function
 
@@ -64,8 +64,8 @@ def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame
     import pandas as pd
 
     results, table = source
-    problem = results.problems[only(results.runs, "problem")]
-    drawn = pd.concat([table, workspaces.ends(problem)], ignore_index=True)
+    problem = results.problems[find_only(results.runs, "problem")]
+    drawn = pd.concat([table, workspaces.list_ends(problem)], ignore_index=True)
     return drawn.assign(problem=problem.name)[["problem", "part", "x", "y", "objective"]]
 
 
@@ -102,13 +102,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     levels = np.geomspace(values.min(), values.max(), _STEPS)
     axes.contourf(x, y, values, levels=levels, norm=colours.norm, cmap=colours.cmap)
     axes.contour(x, y, values, levels=levels, colors="#FFFFFF", linewidths=0.3)
-    workspaces.draw_home(axes, options.home(frame, scene), outlines=True)
+    workspaces.draw_workspace(axes, options.find_workspace(frame, scene), outlines=True)
     style.draw_parts(axes, frame, _LOOK, clip_on=False, zorder=4)
     bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
     numbers = choose_round_numbers(values)
     bar.set_ticks(numbers, labels=[f"{number:g}" for number in numbers])
     bar.minorticks_off()
-    bar.set_label(axis_label("objective", scene))
+    bar.set_label(describe_axis("objective", scene))
     return describe_minima(frame, scene.unit)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bezierplan.figures.groups import axis_label
+from bezierplan.figures.groups import describe_axis
 from bezierplan.figures.panels import Note
 from bezierplan.papers.tharwat2018.panels import landscape
 from bezierplan.papers.tharwat2018.panels.landscape import data as data
@@ -26,7 +26,7 @@ class Options(landscape.Options):
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the nodes of `data` at a logarithmic height."""
-    unit = options.home(frame, scene).unit
+    unit = options.find_workspace(frame, scene).unit
     x, y, values = landscape.list_nodes(frame)
     colours = landscape.build_scale(values).to_rgba(values)
     # Facets between every second node look the same when printed, and are drawn in a third of the
@@ -37,7 +37,7 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     axes.set_box_aspect((1, 1, 0.7), zoom=0.85)
     axes.set_xlabel(f"x ({unit})", labelpad=-6)
     axes.set_ylabel(f"y ({unit})", labelpad=-6)
-    axes.set_zlabel(axis_label("objective", scene), labelpad=-6)
+    axes.set_zlabel(describe_axis("objective", scene), labelpad=-6)
     numbers = landscape.choose_round_numbers(values)
     axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
     axes.tick_params(pad=-3)

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, only
+from bezierplan.figures.panels import Note, RunsPanel, find_only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Metric, Whole
 
@@ -76,11 +76,11 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.analysis.results import pick
     from bezierplan.running import execution
 
-    problem = results.problems[only(results.runs, "problem")]
-    method = only(results.runs, "method")
+    problem = results.problems[find_only(results.runs, "problem")]
+    method = find_only(results.runs, "method")
     feasible = results.runs[results.runs["feasible"]]
     groups = metrics.compute_values(feasible, options.by, results.problems)
-    parts = [workspaces.ends(problem)]
+    parts = [workspaces.list_ends(problem)]
     for group in _rank_commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
         paths = execution.track_again(results.jobs[method], run, problem)
@@ -107,8 +107,8 @@ def _rank_commonest(groups: pd.Series) -> list[float]:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the tracks with both ends of each, and return their lengths as a note."""
-    home = options.home(frame, scene)
-    workspaces.draw_home(axes, home)
+    home = options.find_workspace(frame, scene)
+    workspaces.draw_workspace(axes, home)
     style.draw_parts(axes, frame, workspaces.ENDS)
     notes = []
     for (run, way), name, look in zip(frame.groupby("run"), _NAMES, _LINES):
