@@ -51,10 +51,10 @@ def test_docstrings_do_not_count(tree):
     before = digest(tree, "bezierplan.running.execution")
     file = tree / "bezierplan" / "running" / "execution.py"
     text = file.read_text()
-    assert '    """One row of the runs table' in text
+    assert '    """Return the name of a run' in text
     file.write_text(
         '"""New words.'
-        + text.removeprefix('"""').replace('    """One row', '    """New words. One row')
+        + text.removeprefix('"""').replace('    """Return the name', '    """New words: the name')
     )
     assert digest(tree, "bezierplan.running.execution") == before
 

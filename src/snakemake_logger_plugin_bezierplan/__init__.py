@@ -139,6 +139,8 @@ def list_last_lines(outputs: set[Path], seconds: float, *spent: float) -> list[s
     cpu = "".join(f", CPU: {each:.0f} s" for each in spent)
     lines = [f"Made: {', '.join(made)}"] if made else []
     lines += [f"Results: {', '.join(sorted(folders))}", f"Time: {format_duration(seconds)}{cpu}"]
+    figures = sorted(file for file in outputs if file.suffix == ".svg")
+    lines += [f"Figure: {figures[0]}"] if len(figures) == 1 else []
     for page in sorted(file for file in outputs if file.name == "index.html"):
         said = re.search(r'<p class="headline">(.*?)</p>', page.read_text(encoding="utf-8"))
         lines += [said[1]] if said else []

@@ -11,9 +11,7 @@ workspaces = ("grid",)
 
 
 def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
-    """Return the shortest of some polylines through a random point whose samples lie in
-    free cells.
-    """
+    """Return the shortest polyline through one of some random points that is in free cells."""
     grid, best, shortest, history = problem.workspace, None, np.inf, []
     x_low, x_high, y_low, y_high = grid.bounds
     for middle in rng.uniform((x_low, y_low), (x_high, y_high), (tries, 2)):
