@@ -42,6 +42,10 @@ class Fact(Model):
     above: Any = Field(None, description="a number, or the name of a column")
     below: Any = Field(None, description="a number, or the name of a column")
     holds: int = Field(None, description="in how many rows it must hold; left out: in all")
+    pools: int = Field(
+        1,
+        description="how many drawn fields a row is the mean of; left out: 1, a row pools nothing",
+    )
     percent: bool = Field(False, description="true to show a share in per cent")
     digits: int = Field(2, description="significant digits that are shown; left out: 2")
     turned_by: list[str] = Field(
@@ -124,7 +128,7 @@ def _find(fact: Fact, tables: Mapping[str, pd.DataFrame]) -> tuple[list[str], di
     wanted = fact.rows if fact.holds is None else fact.holds
     if true.sum() != wanted:
         faults.append(f"holds in {true.sum()} of {len(rows)} rows; expected {wanted}")
-    if "conditions" in rows and (pooled := rows["conditions"] > 1).any():
+    if "conditions" in rows and (pooled := rows["conditions"].fillna(1) != fact.pools).any():
         faults.append(f"a row pools {rows['conditions'][pooled].iloc[0]:.0f} conditions")
     faults += _compare_readings(fact, rows, tables["claims_by_reading"])
     return faults, _show(fact, values, true)
