@@ -59,8 +59,8 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     none = int((rows["adds"] == 0).sum())
     return (
         "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios below, no method of a "
-        "paper gives a shorter path that is as smooth, or a smoother one."
+        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios with smooth paths, no "
+        "method of a paper is shorter at equal smoothness, or smoother."
     )
 
 
