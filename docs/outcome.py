@@ -43,7 +43,7 @@ OPEN = (
     "nothing by itself."
 )
 RANGE = (
-    "Our range holds 95 % of the results of experiments as large as the paper's. A range is too wide "
+    "Our range holds 95 % of results of experiments as large as the paper's. A range is too wide "
     "if half of the paper's other numbers of the same kind would lie in it as well."
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
