@@ -68,7 +68,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
     total = sum(heights) + (1.0 if wide else 1.4)
     with mpl.rc_context({"font.size": 8 if wide else 7}):
         figure = Figure(figsize=(width, total))
-        left, share = (0.24, 0.44) if wide else (0.34, 0.4)
+        left, share = (0.23, 0.4) if wide else (0.34, 0.4)
         axes = figure.add_axes((left, 0.55 / total, share, sum(heights) / total))
         top, last = sum(heights), ""
         for (place, own), (x, levels), height in zip(strips, dots, heights, strict=True):
