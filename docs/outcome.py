@@ -197,7 +197,8 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
         text = comparison.describe_range(number) or f"ours {cells[place]}"
         cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
-    return pd.DataFrame(cells, pd.Index(names, name=""), ours.columns[heads:])
+    head = ", ".join(filter(str.strip, ours.columns[:heads])) or "row"
+    return pd.DataFrame(cells, pd.Index(names, name=head), ours.columns[heads:])
 
 
 def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
