@@ -67,8 +67,9 @@ def main(
     files, others = proof.find_differences(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
-        # One line for each file: its first fault.
-        wrong.setdefault(fault.file, fault)
+        # One line for each file: its first fault. What cannot be made from it is no other one.
+        if not any(file in fault.file for file in wrong):
+            wrong[fault.file] = fault
     left, versions = stored.find_strangers(folder, makers), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
     names = set().union(*(changes[file] for file in changes if file != proof.LIST))
