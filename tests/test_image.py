@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[1]
 HADOLINT = shutil.which("hadolint", path=str(Path(sys.executable).parent))
 
 
+# What can be checked without it stands in the other test.
 @pytest.mark.skipif(HADOLINT is None, reason="hadolint has wheels for Linux on x86-64 alone")
 def test_a_linter_finds_nothing_in_the_dockerfile():
     words = [HADOLINT, str(ROOT / "Dockerfile")]

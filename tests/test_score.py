@@ -77,6 +77,7 @@ def test_a_file_of_paths_that_cannot_be_scored_is_told_in_one_line(text, word, t
 
 
 def test_what_is_stored_is_of_the_problems_that_studies_have():
-    for experiment in ("song2016/routes", "meledje/operators", "elhoseny2017/maps"):
+    drawn = "elhoseny2017/fields100"
+    for experiment in ("song2016/routes", "meledje/operators", "elhoseny2017/maps", drawn):
         own = benchmark.read_stored(experiment)
         assert set(own["problem"]) == set(bp.problems(experiment))

@@ -345,6 +345,10 @@ class MethodsTable(Job):
     """By study: what the study declares."""
     repeats: dict[str, int]
     """By study/experiment."""
+    problems: dict[str, list[str]]
+    """By study/experiment, the problems of scale full, which `score` asks for; scale extended draws
+    many more.
+    """
 
     def run(self, input_files, output_files):
         """Measure the methods on each problem."""
@@ -353,10 +357,11 @@ class MethodsTable(Job):
         from bezierplan.running import inputs
 
         files = inputs.group_by_experiment(self.shows, input_files)
-        by_place = {
-            place: results.read(files[place], number, place.partition("/")[2])
-            for place, number in self.repeats.items()
-        }
+        by_place = {}
+        for place, number in self.repeats.items():
+            every = results.read(files[place], number, place.partition("/")[2])
+            runs = results.select(every.runs, {"problem": self.problems[place]})
+            by_place[place] = every._replace(runs=runs)
         families = {
             study: {name: methods.Family(**each) for name, each in own.items()}
             for study, own in self.families.items()

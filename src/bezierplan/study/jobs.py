@@ -386,7 +386,7 @@ def build_audit(study: Study, scale: str) -> Audit:
 
 def build_methods(studies: Studies, scale: str) -> MethodsTable:
     """Return the job that measures the methods of studies beside the baseline that these name."""
-    proposed, families, repeats, shows = {}, {}, {}, {}
+    proposed, families, repeats, problems, shows = {}, {}, {}, {}, {}
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
@@ -394,8 +394,9 @@ def build_methods(studies: Studies, scale: str) -> MethodsTable:
         for name in beside.experiments:
             methods = [*study.experiments[name].methods, beside.baseline]
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]
+            problems[f"{key}/{name}"] = [*study.problems_of(name, "full")]
             shows[f"{key}/{name}"] = count_chunks(study, name, methods, scale)
-    return MethodsTable(proposed, families, repeats, shows=shows)
+    return MethodsTable(proposed, families, repeats, problems, shows=shows)
 
 
 def build_summary(studies: Studies, scale: str) -> Summary:
