@@ -21,7 +21,6 @@ from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
 
 ROOT = Path(__file__).parents[1]
-OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
 PICTURES = {
     "song2016": "figure3",

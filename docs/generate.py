@@ -24,6 +24,7 @@ from docutils.utils.math import latex2mathml
 
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
+from bezierplan.places import OUTCOME
 from bezierplan.planners import list_planners, load_planner, read_settings
 from bezierplan.study.alternatives import describe_values
 
@@ -81,11 +82,11 @@ def write(folder: Path) -> None:
         "papers": page.studies,
         "planners": planners,
         "references": {entry["key"]: entry for entry in content.list_citations()},
-        "numbers": reader.list_rows(pd.read_csv(content.OUTCOME / "numbers.csv")),
+        "numbers": reader.list_rows(pd.read_csv(OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
         "meaning": describe_values,
         "methods_by_family": outcome.build_methods_table(
-            pd.read_csv(content.OUTCOME / "methods.csv"),
+            pd.read_csv(OUTCOME / "methods.csv"),
             {key: study.job.labels for key, study in page.studies.items()},
         ),
         "table": format_table,
@@ -152,7 +153,7 @@ def read_page(key: str) -> str:
 
     Links lead to the site's pages, or to files of results.
     """
-    text = (content.OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
+    text = (OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
     text = re.sub(r"\]\((?:claims|numbers)\.csv\)", "](../results/index.html#KEY){.external}", text)
     return re.sub(r"\[([^]]*)\]\(\.\./\.\./config[^)]*\)", r"\1", text).replace("#KEY", f"#{key}")
 

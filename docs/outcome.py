@@ -21,7 +21,7 @@ from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
 from bezierplan.running.inputs import PAPER
 from bezierplan.study.definition import Study
-from bezierplan.study.page import list_settings
+from bezierplan.study.evidence import list_settings
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")

@@ -6,7 +6,7 @@ import pytest
 from studies import studies
 
 from bezierplan.figures.caption import MOST_FINDINGS, describe_verdicts
-from bezierplan.study import captions
+from bezierplan.study import captions, evidence
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.runs_behind import list_methods
 
@@ -63,7 +63,7 @@ def test_two_verdicts(many, shown, text):
 def test_a_caption_of_a_changed_study_leaves_verdicts_to_the_page():
     own = studies()["tharwat2018"]
     turned = own.but(settings=own.settings | {"c1": 1.4})
-    assert captions.list_changes(turned)
+    assert evidence.list_changes(turned)
     caption = captions.build_caption(turned, "figure15", "full")
     assert [each.words for each in caption.findings] == ["", ""]
     assert "Singer" not in caption.write().partition("swarms. ")[2]

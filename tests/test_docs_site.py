@@ -15,13 +15,12 @@ from urllib.parse import unquote, urldefrag
 import pandas as pd
 import pytest
 from bs4 import BeautifulSoup
-from content import OUTCOME
 from playwright.sync_api import expect
 from test_page_browser import browser, needs_browser  # noqa: F401
 
 import bezierplan as bp
 from bezierplan.analysis.words import WORDS
-from bezierplan.places import STUDIES
+from bezierplan.places import OUTCOME, STUDIES
 from bezierplan.planners import list_planners
 from bezierplan.study import reading
 

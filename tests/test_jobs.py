@@ -16,7 +16,7 @@ from bezierplan.analysis import markdown
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import captions, jobs, page, reading, runs_behind
+from bezierplan.study import captions, evidence, jobs, page, reading, runs_behind
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -65,9 +65,9 @@ def test_caption_is_one_line_that_says_just_what_it_says():
 
 def test_a_study_with_another_setting_is_marked_as_changed():
     """The others are not: the settings of the outcome are those of today."""
-    assert [own.key for own in studies().values() if captions.list_changes(own)] == []
+    assert [own.key for own in studies().values() if evidence.list_changes(own)] == []
     turned = SONG.but(settings=SONG.settings | {"population": 198})
-    assert "population of smooth is 198, in the README's outcome 200" in captions.list_changes(
+    assert "population of smooth is 198, in the README's outcome 200" in evidence.list_changes(
         turned
     )
 

@@ -18,6 +18,9 @@ TREE = PACKAGE.parents[1] if CHECKOUT else PACKAGE / "tree"
 STUDIES = TREE / "config" / "studies"
 """The studies of this project."""
 
+OUTCOME = TREE / "docs" / "outcome"
+"""The tables of what many runs say of these studies."""
+
 EXTRA = frozenset(("jinja2", "pyarrow", "seaborn", "snakemake"))
 """Libraries of the extra `workflow`, which run whole studies."""
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import EVIDENCE, list_files, read_answers, sort_as_printed
+from bezierplan.figures.page import EVIDENCE, list_files, sort_as_printed
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -13,9 +13,8 @@ from bezierplan.figures.page.page_job import (
 )
 from bezierplan.machine.digest import name_module, read_docstring
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
-from bezierplan.study import captions, jobs
+from bezierplan.study import captions, evidence, jobs
 from bezierplan.study.alternatives import find_default
-from bezierplan.study.captions import list_settings as list_settings
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
 
@@ -64,7 +63,7 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     known = [
         key
         for key, own in studies.items()
-        if scale != "extended" and captions.is_of_project(own) and not shown[key].changes
+        if scale != "extended" and evidence.is_of_project(own) and not shown[key].changes
     ]
     return Page(
         PageJob(scale, shown, known),
@@ -106,12 +105,14 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             *(("claims", "checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
-        changes=captions.list_changes(study),
+        changes=evidence.list_changes(study),
         experiments={
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
         },
-        answer=read_answers().get(study.key) if captions.is_of_project(study) else None,
+        answer=next(
+            ((row["title"], row["text"]) for row in evidence.read_kept(study, "texts")), None
+        ),
     )
 
 

@@ -59,6 +59,6 @@ def count_layouts(study: Study, experiment: str, scale: str) -> int:
     return max((layouts or {scale: 1})[scale] for layouts in problems)
 
 
-def count_runs(study: Study, experiment: str, scale: str) -> int:
+def count_experiment_runs(study: Study, experiment: str, scale: str) -> int:
     """Return the runs of each method in an experiment, on all layouts of a problem."""
     return study.experiments[experiment].repeats[scale] * count_layouts(study, experiment, scale)

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.places import TREE
+from bezierplan.places import OUTCOME
 from bezierplan.schema.checked import check_all
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem
@@ -17,7 +17,7 @@ _MEDIANS = [*_OF_FREE, "evaluations", "cpu_s"]
 
 _SCORED = ["problem", "method", "runs", "feasible", "excess", "evaluations"]
 
-STORED = TREE / "docs" / "outcome" / "methods.csv"
+STORED = OUTCOME / "methods.csv"
 """The file with the results of the papers' methods on each problem."""
 
 

@@ -2,15 +2,13 @@
 prepare words and drawings, and `build` fills templates.
 """
 
-import csv
 import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.places import TREE
+from bezierplan.places import OUTCOME
 
 HERE = Path(__file__).parent
-OUTCOME = TREE / "docs" / "outcome"
 EVIDENCE = [
     str(OUTCOME / f"{name}.csv")
     for name in ("numbers", "claims", "methods", "claim_checks", "wholes")
@@ -23,15 +21,6 @@ def list_files() -> list[str]:
     return sorted(
         str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir()
     )
-
-
-def read_answers() -> dict[str, tuple[str, str]]:
-    """Read title and text of the answer to each paper, by study."""
-    file = OUTCOME / "texts.csv"
-    if not file.is_file():
-        return {}
-    with file.open(encoding="utf-8", newline="") as rows:
-        return {row["study"]: (row["title"], row["text"]) for row in csv.DictReader(rows)}
 
 
 def sort_as_printed(names: Iterable[str]) -> list[str]:

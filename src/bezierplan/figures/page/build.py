@@ -66,7 +66,7 @@ def gather_content(
         scale=job.scale,
         about_scale=answer.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else describe_version(),
-        headline=_write_headline(_replace(tables, evidence, job.outcome), job.studies),
+        headline=_write_headline(job, tables, evidence),
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -78,19 +78,6 @@ def gather_content(
             }
         },
     )
-
-
-def _replace(
-    tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None, studies: list[str]
-) -> list[pd.DataFrame] | None:
-    """Return numbers, claims and methods of all studies, with the evidence in place of the scale's
-    own for some studies.
-    """
-    if not evidence:
-        return tables
-    many = evidence.select(studies)[: len(tables or evidence)]
-    own = [table[~table["study"].isin(studies)] for table in tables or []]
-    return [pd.concat(both, ignore_index=True) for both in zip(many, own)] if own else [*many]
 
 
 def _read_check(file: Path) -> dict[str, Any]:
@@ -114,12 +101,22 @@ def _merge_workspaces(data: dict[str, dict]) -> None:
         problem["workspace"] = names[problem["workspace"]]
 
 
-def _write_headline(tables: list | None, studies: Iterable[str]) -> list[str]:
-    """Return the sentences on numbers and claims of the page's studies, if there are any."""
-    if not tables:
-        return []
-    numbers, claims = (table[table["study"].isin([*studies])] for table in tables[:2])
-    said = (headline.describe_numbers(numbers), headline.describe_claims(claims))
+def _write_headline(
+    job: PageJob, tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None
+) -> list[str]:
+    """Return the sentences on numbers and claims of the page's studies, if there are any.
+
+    tables: numbers and claims of the scale. evidence: stands in for those of `job.outcome`.
+    """
+    replaced = job.outcome if evidence else []
+    rest = {*job.studies} - {*replaced}
+    # A scale without tables of all studies has no rows of its own.
+    own = tables or [table[:0] for table in evidence or ()]
+    describe = (headline.describe_numbers, headline.describe_claims)
+    said = [
+        write(pd.concat([many[many["study"].isin(replaced)], table[table["study"].isin(rest)]]))
+        for write, table, many in zip(describe, own, evidence or own)
+    ]
     return [*filter(None, said)]
 
 

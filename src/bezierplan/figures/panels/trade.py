@@ -86,7 +86,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         y=metrics.compute_values(runs, "gap", results.problems),
     )
     bounds = runs.groupby("problem")["bound"].first()
-    lines = _compute_lines({name: results.problems[name] for name in bounds.index}, bounds, of_bend)
+    # Against CPU time the baseline is a point like the others.
+    problems = {name: results.problems[name] for name in bounds.index} if of_bend else {}
+    lines = _compute_lines(problems, bounds)
     rows: list[dict[str, Any]] = [
         {"part": "line", "radius": radius}
         | _compute_medians(own[["x", "y"]].to_numpy(), f"{radius}")
@@ -103,13 +105,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             "free": of_method["feasible"].mean(),
             "cornered": int(np.isposinf(of_method["x"]).sum()),
         }
-        row |= _compute_medians(medians, f"{options.x}/{method}") if len(places) > 1 else {}
-        row |= next(iter(places.values())) if len(places) == 1 else {}
+        first, *others = places.values()
+        row |= _compute_medians(medians, f"{options.x}/{method}") if others else first
         if of_bend and of_method["planner"].iloc[0] != _BASELINE:
             round_paths = np.isfinite(of_method["x"])
             often = round_paths.groupby(of_method["problem"]).mean().clip(upper=round_paths.mean())
             row["adds"] = 0
-            end = "_low" if len(places) == 1 else ""
+            end = "" if others else "_low"
             for name, place in places.items():
                 bend, excess = place[f"x{end}"], place[f"y{end}"]
                 # Of all points of the line that are as smooth, the shortest.
@@ -146,27 +148,26 @@ def _measure_bends(runs: pd.DataFrame) -> np.ndarray:
     )
 
 
-def _compute_lines(problems: dict[str, Problem], bounds: pd.Series, wanted: bool) -> pd.DataFrame:
+def _compute_lines(problems: dict[str, Problem], bounds: pd.Series) -> pd.DataFrame:
     """Compute the rounded shortest paths, from a sharp one to the roundest, at the same radii in
     all problems.
 
-    Columns: problem, radius that is asked, x (bend) and y (excess). wanted: if False, there are no
-    rows.
+    Columns: problem, radius that is asked, x (bend) and y (excess). bounds: lengths of the exact
+    shortest paths, by problem, in units.
     """
     import pandas as pd
 
     def build_point(name: str, radius: float) -> tuple[str, float, float, float]:
         return name, radius, *_round_shortest_path(problems[name], bounds[name], radius)
 
-    names = list(problems) if wanted else []
-    rows = [build_point(name, math.inf) for name in names]
+    rows = [build_point(name, math.inf) for name in problems]
     # The roundest path of a problem tells which radii fit.
     widest = [1 / bend for *_, bend, _ in rows if 0 < bend < math.inf]
     low, high = min(widest, default=1) / _RANGE, max(widest, default=0)
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high or low)) + 1)
     ladder = [float(f"{part}e{power}") for power in decades for part in _RADII]
     radii = [0.0, *(radius for radius in ladder if low <= radius <= high)]
-    rows += [build_point(*each) for each in itertools.product(names, radii)]
+    rows += [build_point(*each) for each in itertools.product(problems, radii)]
     return pd.DataFrame(rows, columns=["problem", "radius", "x", "y"])
 
 
@@ -210,9 +211,27 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     placed, sides, edges = _place_at_edges(frame)
     groups = style.list_groups(placed[placed["part"] == "method"], "method", options.where, scene)
     line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
+    _scale_axes(axes, placed, sides, edges, of_bend)
+    if len(line):
+        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
+        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
+    for _, rows, look in groups:
+        _draw_method(axes, rows.iloc[0], look | {"linestyle": "none"})
+    bend = f"tightest bend (1/{scene.unit})"
+    axes.set_xlabel(bend if of_bend else describe_axis("cpu_s", scene))
+    axes.set_ylabel(describe_axis("gap", scene))
+    axes.grid(visible=True)
+    return _write_note(frame[frame["part"] == "method"], scene)
+
+
+def _scale_axes(
+    axes: Axes, table: pd.DataFrame, sides: list[float], edges: dict[float, str], of_bend: bool
+) -> None:
+    """Set the ends, scales and ticks of both axes. sides, edges: as from `_place_at_edges`."""
     axes.set_xlim(sides)
     style.scale_axis(axes.xaxis, "log", "" if of_bend else "s")
-    top = 1.5 * np.nanmax(placed[["y", "y_high"]].to_numpy(), initial=_EQUAL)
+    top = 1.5 * np.nanmax(table[["y", "y_high"]].to_numpy(), initial=_EQUAL)
     axes.set_yscale("symlog", linthresh=_LINEAR)
     axes.set_ylim(-0.1 * min(top, _LINEAR), top)
     ticks = [tick for tick in _TICKS if not 0 < tick < 0.15 * min(top, _LINEAR) and tick < top]
@@ -225,30 +244,22 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             ticks.append(tick)
     names = [edges.get(tick, f"{tick:g}") for tick in ticks]
     axes.set_xticks(ticks, names if of_bend else None)
-    if len(line):
-        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
-        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
-        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
-    for _, rows, look in groups:
-        x, x_low, x_high, y, y_low, y_high = rows[_ENDS].iloc[0]
-        look |= {"linestyle": "none"}
-        axes.plot([], [], **look)
-        hollow = {"label": None}
-        if rows["free"].iloc[0] < _OFTEN_FREE:
-            hollow["markerfacecolor"] = style.FREE
-            axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
-        errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
-        axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
-        text, colour = _describe_paths(rows.iloc[0]), look["color"]
-        if math.isfinite(x) and math.isfinite(y):
-            axes.annotate(
-                text, (x, y), _BESIDE, textcoords="offset points", fontsize="x-small", color=colour
-            )
-    bend = f"tightest bend (1/{scene.unit})"
-    axes.set_xlabel(bend if of_bend else describe_axis("cpu_s", scene))
-    axes.set_ylabel(describe_axis("gap", scene))
-    axes.grid(visible=True)
-    return _write_note(frame[frame["part"] == "method"], scene)
+
+
+def _draw_method(axes: Axes, row: pd.Series, look: dict[str, Any]) -> None:
+    """Draw the mark of a method, with intervals and the share of free paths beside it."""
+    x, x_low, x_high, y, y_low, y_high = row[_ENDS]
+    axes.plot([], [], **look)
+    hollow = {"label": None}
+    if row["free"] < _OFTEN_FREE:
+        hollow["markerfacecolor"] = style.FREE
+        axes.plot([], [], label="hollow: fewer than 95 % of the paths are free", **style.HOLLOW)
+    errors = {"xerr": [[x - x_low], [x_high - x]], "yerr": [[y - y_low], [y_high - y]]}
+    axes.errorbar(x, y, elinewidth=0.7, **errors, **look | hollow)
+    if math.isfinite(x) and math.isfinite(y):
+        words = {"fontsize": "x-small", "color": look["color"]}
+        text = _describe_paths(row)
+        axes.annotate(text, (x, y), _BESIDE, textcoords="offset points", **words)
 
 
 def _place_at_edges(frame: pd.DataFrame) -> tuple[pd.DataFrame, list[float], dict[float, str]]:
