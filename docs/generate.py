@@ -93,9 +93,7 @@ def write(folder: Path) -> None:
         "about": content.read_prose,
         "page_of": read_page,
         "origin_of_maps": read_origin_of_maps,
-        # Files of results, and no links to methods within a page.
         "root": "../results/",
-        "methods_shown": {},
     }
     pages = {
         **{f"methods/{n}.md": ("method.md.jinja", {"planner": own}) for n, own in planners.items()},

@@ -108,6 +108,6 @@ def test_a_straight_path_bends_nowhere_and_cannot_be_beaten():
     free = Problem("free", PROBLEMS["wide"].workspace, (0.5, 0.5), (0.5, 9.5))
     found = bp.plan(free, "shortest_path")
     assert largest_curvature(found.path) == 0
-    line = trade._compute_lines({"free": free}, pd.Series({"free": found.length}), True)
+    line = trade._compute_lines({"free": free}, pd.Series({"free": found.length}))
     assert line[["x", "y"]].to_numpy() == pytest.approx(0, abs=1e-9)
     assert not trade.adds(line[["x", "y"]].to_numpy(), 0.0, 0.0, 1.0)
