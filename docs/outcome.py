@@ -33,27 +33,27 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "The papers' methods, those with the fewest free paths first: medians over the problems. The "
-    "exact shortest path with rounded corners is asked to turn no tighter than the method's median "
-    "path without corners. The column after it counts the problems in which the method is shorter "
-    "than that path, or turns more gently than it can."
+    "Medians over the problems; methods with the fewest free paths come first. The rounded shortest "
+    "path turns no tighter than the method's median path without corners. The column after it "
+    "counts the problems in which the method is shorter than that path, or turns more gently than "
+    "it can."
 )
 OPEN = (
-    "No paper prints all that its numbers depend on, so a printed number that misses ours refutes "
-    "nothing by itself."
+    "No paper prints everything behind its numbers, so a number outside our range refutes nothing "
+    "by itself."
 )
 RANGE = (
-    "Our range holds 95 % of results of experiments as large as the paper's. A range is too wide "
-    "if half of the paper's other numbers of the same kind would lie in it as well."
+    "Our range holds 95 % of the results of experiments of the paper's size. It is too wide if it "
+    "also holds half of the paper's other numbers of the same kind."
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
 IDENTIFIED = (
-    "Some printed lengths are, to the last digit, lengths of paths through centres of cells, or "
-    "sums of straight and diagonal moves. Each row has the printed number, the length of the "
-    "closest such path, its cells or moves, and how many of the numbers nearby would match by "
-    "chance; rows of all numbers together have how many of how many match. They say how the "
-    "paper's numbers came about; no run of ours made one of them."
+    "Some printed lengths equal, to the last digit, lengths of paths through centres of cells, or "
+    "sums of straight and diagonal moves. Each row gives the printed number, the length of the "
+    "closest such path, its cells or moves, and the share of nearby numbers that match by chance. "
+    "A row without a single number says how many of the numbers match. This shows how the paper's "
+    "numbers came about; our runs produced none of them."
 )
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
