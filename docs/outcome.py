@@ -33,10 +33,10 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "Medians over the problems; methods with the fewest free paths come first. The rounded shortest "
-    "path turns no tighter than the method's median path without corners. The column after it "
-    "counts the problems in which the method is shorter than that path, or turns more gently than "
-    "it can."
+    "Medians over the problems; methods with the fewest free paths come first. The rounded "
+    "shortest path turns no tighter than the method's median path without corners. The column "
+    "after it counts the problems in which the method is shorter than that path, or turns more "
+    "gently than it can."
 )
 OPEN = (
     "No paper prints everything behind its numbers, so a number outside our range refutes nothing "
