@@ -138,7 +138,7 @@ class Pivot(TableEntry):
     )
     columns: Columns = Field([], description="a list as in `index`: what the columns are")
     values: list[TableValue] = Field(
-        description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
+        description="a list of {metric, statistic, label, decimals}, and optionally `where`",
         min_length=1,
     )
     labels: dict[Line, Line] = Field(

@@ -23,10 +23,10 @@ Words = Annotated[
 class Layout(Model):
     """The form of a table or figure in print."""
 
-    says: Line = Field(description="what the text says of it, in words of one's own")
+    says: Line = Field(description="what the paper's text says about it, in your own words")
     series: Words = Field(
         {},
-        description="what a figure shows, in the order of print: name, value or entry of the "
+        description="what a figure shows, in the printed order: name, value or entry of the "
         "legend → its printed name; or a list of these",
     )
     axes: dict[Axis, build_list_type(Line)] = Field(
@@ -35,21 +35,21 @@ class Layout(Model):
     units: dict[Axis, build_list_type(Line)] = Field({}, description="likewise its unit")
     looks: dict[Line, dict[Name, Setting]] = Field(
         {},
-        description="entry of the legend → properties of matplotlib that print gives it, such as "
-        "color; red, blue and black are those of all figures",
+        description="entry of the legend → its properties of matplotlib in the paper, such as "
+        "color; red, blue and black are the colours of all our figures",
     )
     heads: dict[Name, str] = Field(
         {}, description="column of the runs table → the printed head of a table, or an empty one"
     )
     rows: Words = Field(
-        {}, description="rows of a table, in the order of print: name → its printed name; or a list"
+        {}, description="rows of a table, in the printed order: name → its printed name; or a list"
     )
     words: dict[Name, Line] = Field({}, description="other names of a table, likewise")
     form: dict[Name, Any] = Field(
         {}, description="the rest of its form, which tests compare: panels, kind, columns, ..."
     )
     conditions: dict[Name, Any] = Field(
-        {}, description="what print says of the runs behind it, which tests compare with ours"
+        {}, description="what the paper says about its runs, which tests compare with ours"
     )
 
     @property

@@ -116,7 +116,7 @@ class ReadingEntry(Model):
     )
     claims: build_list_type(ClaimId) = Field(
         [],
-        description="the claims that are judged under it; left out: those with `main`",
+        description="the claims that it tests; left out: those with `main`",
     )
 
     @property

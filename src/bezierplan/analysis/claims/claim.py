@@ -34,7 +34,7 @@ class Claim(Model):
     id: ClaimId = Field(description="C and a number, such as C1")
     place: Line = Field(description="where the paper says it")
     statement: Line = Field(
-        description="one plain sentence of at most 160 characters, in words of one's own"
+        description="one plain sentence of at most 160 characters, in your own words"
     )
     artefact: build_list_type(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
         [],
@@ -46,13 +46,12 @@ class Claim(Model):
     )
     main: Literal[True] = Field(
         None,
-        description="true: the abstract or the conclusion says it, so that it decides whether the "
-        "paper counts as reproduced; left out otherwise",
+        description="true: the abstract or the conclusion says it; left out otherwise",
     )
     scale: Literal["extended"] = Field(
         None,
-        description="extended: judged at that scale alone, for the paper has nothing that its runs "
-        "are behind; left out for all other claims",
+        description="extended: tested at that scale alone, because nothing in the paper needs its "
+        "runs; left out for all other claims",
     )
     criterion: Literal["ours"] = Field(
         None,
@@ -68,9 +67,8 @@ class Claim(Model):
     )
     variants: dict[str, build_list_type(Values)] = Field(
         {},
-        description="column → list of values: the claim is judged with the first one, and once "
-        "more, in a row of its own, with each of the others, if any, in its place; null is no "
-        "condition",
+        description="column → list of values: the claim is tested with the first one and, in "
+        "rows of their own, with each of the others; null is no condition",
         min_length=1,
     )
     checks: list[Annotated[ClaimCheck, build_choice_type("test", list_kinds())]] = Field(

@@ -154,7 +154,7 @@ class RunsPanel(Panel):
     )
     context: Flag = Field(
         False,
-        description="whether what the paper does not show is drawn as well, true or false: the "
+        description="whether to draw also what the paper does not show, true or false: the "
         "exact shortest path or its length, the best known one of the same kind, where pieces of a "
         "curve join, the spread of all runs",
     )

@@ -46,7 +46,7 @@ class Options(RunsPanel):
     pick: Pick = Field(None, description=PICK)
     hue: Column = Field(
         None,
-        description="in place of pick, a column of the runs table: a line for each of its values",
+        description="instead of pick, a column of the runs table: a line for each of its values",
     )
     statistic: Literal["mean", "median"] = Field(
         "mean", description="with hue, of its runs: mean (left out: this) or median"

@@ -59,7 +59,7 @@ class Options(MetricPanel, TablePanel):
     experiment: Experiment = Field(None, description="the name of an experiment")
     data: Function = Field(
         None,
-        description="in place of experiment, the name of a function of the study's module that "
+        description="instead of experiment, the name of a function of the study's module that "
         "returns a table",
     )
     where: Where = Field(

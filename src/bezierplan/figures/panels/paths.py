@@ -144,7 +144,7 @@ class Options(RunsPanel):
     experiment: Experiment = Field(None, description="the name of an experiment")
     pick: Pick = Field(None, description=PICK)
     explicit: Explicit = Field(
-        None, description="in place of experiment and pick, {curve, points}: a path without a run"
+        None, description="instead of experiment and pick, {curve, points}: a path without a run"
     )
     hue: Column = Field(
         None, description="a column of the runs table: a run is picked for each of its values"

@@ -95,7 +95,7 @@ MARGIN = (
     "in a file without a border, how far the border lies from the obstacles, in units, a "
     "number of at least 0"
 )
-UNKNOWN = "what pixels count as that are unknown: occupied or free"
+UNKNOWN = "whether unknown pixels count as occupied or free"
 CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 

@@ -19,7 +19,7 @@ class Options(Workspace):
     circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(
         description="a list of [x, y, radius]"
     )
-    radius: Number = Field(None, description="that of all circles, in the place of their own")
+    radius: Number = Field(None, description="one radius for all circles, instead of their own")
 
 
 def load(description: dict, folder: Path) -> Circles:
