@@ -112,9 +112,9 @@ def test_numbers_stand_beside_published_ones_with_how_near_they_are(content):
     for end in ("low", "high"):
         assert first["bar"][end] == second["bar"][end], "one axis a column"
     assert second["bar"]["ours"] > first["bar"]["ours"]
-    assert math.isclose(second["apart"], 14 / 10.51 - 1)
+    assert (second["beside"], second["value_published"]) == (14, 10.51)
     assert [cell["counted"] for cell in (first, second, third, other)] == [True] * 3 + [False]
-    assert (other["value_published"], other["apart"]) == (None, None)
+    assert other["value_published"] is None
 
 
 def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_each_cell(content):
@@ -135,7 +135,7 @@ def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     empty = pd.DataFrame()
     (found,) = reader._list_numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
     assert found["beside"] == 5.5
-    assert math.isclose(found["apart"], 0.1)
+    assert math.isclose(found["beside"], 1.1 * found["value_published"])
 
 
 def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(content, folder):

@@ -20,6 +20,9 @@ from typing import Annotated, Any, NamedTuple, NewType
 
 from bezierplan.planners import PLACE
 
+Row = dict[str, Any]
+"""A row of a table: column -> value."""
+
 RunName = NewType("RunName", str)
 
 VALUES = {

@@ -15,7 +15,7 @@ import pyarrow as pa
 from bezierplan.geometry.region import Region, build_region
 from bezierplan.planners import is_file
 from bezierplan.running import answer, rides, rows
-from bezierplan.running.chunk import Chunk, Condition
+from bezierplan.running.chunk import Chunk, Condition, Settings
 from bezierplan.running.columns import (
     ANSWER,
     TAKEN,
@@ -23,6 +23,7 @@ from bezierplan.running.columns import (
     DriveTimes,
     Outcome,
     Planned,
+    Row,
     Times,
 )
 from bezierplan.running.guard import interface, process, worker
@@ -39,7 +40,7 @@ def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
     return f"{chunk.study}/{chunk.experiment}/{condition.name}/{chunk.method}/{repeat}"
 
 
-def resolve_settings(chunk: Chunk, condition: Condition) -> dict[str, Any]:
+def resolve_settings(chunk: Chunk, condition: Condition) -> Settings:
     """Return all settings of a chunk's method under a condition.
 
     Those of the problem come first, then the varied values. Presets expand to their settings;
@@ -151,7 +152,7 @@ def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
         )
 
 
-def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
+def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> Row:
     """Return the first columns of a row: the run's id and its parts, its place, and all
     settings.
     """
@@ -182,7 +183,7 @@ def build_row(
     drew: bool,
     problem: Problem,
     blocked: Region,
-) -> dict[str, Any]:
+) -> Row:
     """Build one row of the runs table from a planner's answer.
 
     drew: the run drew random numbers. blocked: the region of the problem's workspace. Raises
@@ -221,7 +222,7 @@ def make_rows_again(
     runs: list[tuple[Condition, int]],
     problems: dict[str, Problem],
     worlds: dict[str, World],
-) -> list[dict[str, Any]]:
+) -> list[Row]:
     """Repeat some runs and return their rows."""
     tasks = [build_task(chunk, *run) for run in runs]
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
@@ -234,7 +235,7 @@ def make_rows_again(
 
 def _build_judge(
     chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
-) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
+) -> Callable[[Condition, int, worker.Reply], tuple[Row, Row]]:
     """Return a function that turns a worker's reply into a row and, for a drive, its trace."""
     # Built once: all runs on a problem are judged on the same region.
     regions = (
@@ -330,7 +331,7 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
 
 
 def refuse_unrepeatable(
-    repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
+    repetitions: Iterable[Row], row: Row, chunk: Chunk, deterministic: bool
 ) -> None:
     """Raise PlannerFailure, naming the run, unless its repetitions equal its row in every bit."""
     for again in repetitions:

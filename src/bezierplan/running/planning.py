@@ -13,6 +13,7 @@ import numpy as np
 from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Plan
 from bezierplan.running import answer, problems
+from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
 from bezierplan.workspaces.problem import Path, Problem
@@ -79,7 +80,7 @@ class Run(NamedTuple):
     problem: Problem
     legs: Sequence[Problem]
     bound: shortest_paths.Bound
-    settings: dict[str, Any]
+    settings: Settings
     seed: int
 
 

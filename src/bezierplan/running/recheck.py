@@ -26,7 +26,7 @@ from bezierplan.geometry.region import build_region
 from bezierplan.machine.digest import COMPUTING, find_library_version
 from bezierplan.running import answer, execution, problems, rows
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.columns import DriveOutcome, Outcome, Planned
+from bezierplan.running.columns import DriveOutcome, Outcome, Planned, Row
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import escape
 from bezierplan.workspaces.problem import Problem
@@ -213,9 +213,7 @@ def _list_runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _find_identity_faults(
-    file: str, entries: list[dict[str, Any]], chunk: Chunk
-) -> Iterator[Difference]:
+def _find_identity_faults(file: str, entries: list[Row], chunk: Chunk) -> Iterator[Difference]:
     """Yield the differences between the rows of a file and what is known of them before
     their runs.
     """
@@ -235,7 +233,7 @@ def _find_identity_faults(
 
 def _find_row_faults(
     file: str,
-    row: dict[str, Any],
+    row: Row,
     problem: Problem,
     moving: dict[str, World],
     cache: dict[tuple, dict[str, tuple[Any, float]]],
@@ -293,7 +291,7 @@ def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, 
 
 
 def _judge_way(
-    row: dict[str, Any], points: np.ndarray, problem: Problem, world: World
+    row: Row, points: np.ndarray, problem: Problem, world: World
 ) -> dict[str, tuple[Any, float]]:
     """Return what the way of a drive says: column -> value and tolerance."""
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())

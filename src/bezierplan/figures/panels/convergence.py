@@ -24,6 +24,7 @@ from bezierplan.figures.groups import (
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
 from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
+from bezierplan.running.columns import Row
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
 from bezierplan.workspaces.seeds import generator
 
@@ -134,9 +135,7 @@ def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.Dat
     return pd.DataFrame(names | drawn)
 
 
-def _build_rows_of_group(
-    group: Results, options: Options, generations: int
-) -> Iterable[dict[str, Any]]:
+def _build_rows_of_group(group: Results, options: Options, generations: int) -> Iterable[Row]:
     """Yield each generation of a group with the interval of its statistic.
 
     All generations use the same draws of runs, so that the ends of the interval are smooth lines.

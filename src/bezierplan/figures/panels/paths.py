@@ -18,6 +18,7 @@ from bezierplan.figures.groups import count_runs, describe_axis, find_published
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
+from bezierplan.running.columns import Row
 from bezierplan.schema.model import (
     Column,
     Experiment,
@@ -79,7 +80,7 @@ _CHANGED = {
 }
 
 
-def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
+def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, Row]:
     """Choose the run that a panel shows, and describe it in the columns of the panel's csv file.
 
     Returns None in place of a run if there is none to choose. Columns: problem, method, runs and

@@ -20,6 +20,7 @@ from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.figures import style
 from bezierplan.figures.groups import count_runs, describe_axis
 from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.running.columns import Row
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     # Against CPU time the baseline is a point like the others.
     problems = {name: results.problems[name] for name in bounds.index} if of_bend else {}
     lines = _compute_lines(problems, bounds)
-    rows: list[dict[str, Any]] = [
+    rows: list[Row] = [
         {"part": "line", "radius": radius}
         | _compute_medians(own[["x", "y"]].to_numpy(), f"{radius}")
         for radius, own in lines.groupby("radius")

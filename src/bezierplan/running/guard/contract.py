@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import cycle
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan, is_file, list_planners
 from bezierplan.running import answer
+from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
@@ -69,7 +70,7 @@ class ContractFinding(NamedTuple):
         return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
-def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFinding]:
+def check_planner(planner: str, settings: Settings) -> Iterator[ContractFinding]:
     """Test a planner, given as a name or the path of a file, with these settings; yield a finding
     for each fact and problem.
 
@@ -123,9 +124,7 @@ def build_drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem
 # Facts
 
 
-def _find_faults(
-    planner: str, module: ModuleType, settings: dict[str, Any]
-) -> Iterator[ContractFinding]:
+def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterator[ContractFinding]:
     """Yield the findings of `check_planner`."""
     by_name = {problem.name: problem for problem in list_problems(module)}
     keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
@@ -170,7 +169,7 @@ def _find_faults(
 
 def run_planner(
     planner: str,
-    settings: dict[str, Any],
+    settings: Settings,
     by_name: dict[str, Problem],
     seeds: Sequence[int],
     hashing: int = 0,

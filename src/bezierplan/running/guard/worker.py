@@ -21,6 +21,7 @@ import numpy as np
 from bezierplan.machine import opened
 from bezierplan.planners import Plan, load_planner
 from bezierplan.running import answer
+from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import plain
 from bezierplan.running.jobs.log import describe_error
 from bezierplan.running.jobs.watchdog import (
@@ -68,7 +69,7 @@ class Task(NamedTuple):
     name: str
     problem: str
     seed: list[str | int] | int
-    settings: dict[str, Any]
+    settings: Settings
 
     def generator(self) -> np.random.Generator:
         """Return a new generator with the run's random numbers."""
@@ -88,7 +89,7 @@ class Work(NamedTuple):
     problems: dict[str, Problem]
     function: str = "plan"
     worlds: dict[str, World] | None = None
-    policy: dict[str, Any] | None = None
+    policy: Settings | None = None
 
     def run_task(self, task: Task, rng: np.random.Generator) -> Any:
         """Make a plan, a track or a ride."""
@@ -103,7 +104,7 @@ class Work(NamedTuple):
 def _plan_for_view(
     module: ModuleType,
     rng: np.random.Generator,
-    settings: dict[str, Any],
+    settings: Settings,
     warm: bool,
     view: Problem,
     last: Any,
