@@ -141,23 +141,6 @@ _LEAST_SPAN = 0.003
 _LINEAR = 1e-3
 
 
-def choose_ground_colour(share: float) -> str:
-    """Return the colour of terrain, pale so that lines stand out.
-
-    share: the height, from 0 (lowest) to 1 (highest).
-    """
-    import matplotlib as mpl
-
-    return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
-
-
-def interval_band(colour: str) -> dict[str, Any]:
-    """Return the style of a line's interval: pale, with an edge that stays visible where bands
-    overlap.
-    """
-    return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
-
-
 def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
     """Return the name of the look of each method in all figures.
 
@@ -209,13 +192,13 @@ def choose_line_styles(
 
 
 def list_groups(
-    frame: pd.DataFrame, column: str, where: dict[str, Any], scene: Any
+    frame: pd.DataFrame, column: str, options: Any, scene: Any
 ) -> list[tuple[Any, pd.DataFrame, dict[str, Any]]]:
     """Return the values of a column in the order of a panel, each with its rows and its style.
 
     The style has the printed name of the value as its label.
     """
-    values = list_in_order(frame[column], where)
+    values = list_in_order(frame[column], options.where)
     return [
         (
             value,
@@ -234,7 +217,7 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **mor
             axes.plot(own["x"], own["y"], **more | look)
 
 
-def scale_axis(axis: Any, scale: str = "linear", unit: str = "") -> None:
+def scale_axis(axis: Any, scale: str, unit: str) -> None:
     """Scale an axis of measured values and print plain numbers along it, lengths of time with their
     unit.
 

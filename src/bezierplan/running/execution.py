@@ -195,18 +195,12 @@ def build_row(
         plan = answer.accept_answer(plan, problem, [*TAKEN, *run.settings, *condition.values])
         answer.check_history(plan, interface.read_traits(chunk.planner).keeps_best)
     curve, points = answer.store_path(plan.path)
-    # The verdict is that of the points which the row holds.
-    length, check = answer.judge_path(answer.restore_path(curve, points), blocked)
     outcome = Outcome(
         drew=drew,
         objective=plan.objective,
-        length=length,
         claimed_feasible=plan.claimed_feasible,
-        feasible=check.feasible,
-        collision_at=check.collision_at,
-        collision_depth=check.depth,
-        clearance=check.clearance,
-        clearance_error=check.tolerance,
+        # The verdict is that of the points which the row holds.
+        **answer.judge_path(answer.restore_path(curve, points), blocked),
         evaluations=plan.evaluations,
         generations=len(plan.history) - 1,
         stop=plan.stop,

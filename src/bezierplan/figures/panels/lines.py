@@ -119,7 +119,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         methods = frame["method"].dropna().unique() if "method" in frame else []
         groups = [(None, frame, style.choose_line_styles(list(methods) or [""], scene.looks)[0])]
     else:
-        groups = style.list_groups(frame, hue, options.where, scene)
+        groups = style.list_groups(frame, hue, options, scene)
     for _, rows, look in groups:
         if options.experiment is None:
             axes.plot(rows[x], rows["value"], **_choose_style(look, len(rows)))

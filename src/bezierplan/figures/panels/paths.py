@@ -315,7 +315,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
 
     Returns a note with their measures.
     """
-    groups = style.list_groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options, scene)
     clauses = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(groups))

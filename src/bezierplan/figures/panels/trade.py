@@ -210,7 +210,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the line and a mark with intervals for each method."""
     of_bend = options.x == "bend"
     placed, sides, edges = _place_at_edges(frame)
-    groups = style.list_groups(placed[placed["part"] == "method"], "method", options.where, scene)
+    groups = style.list_groups(placed[placed["part"] == "method"], "method", options, scene)
     line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
     _scale_axes(axes, placed, sides, edges, of_bend)
     if len(line):

@@ -165,7 +165,4 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
 
 def cut_motion(motion: Motion, begin: float, end: float) -> Motion:
     """Return the part of a motion between two times, with at least two vertices."""
-    inside = (motion.times > begin) & (motion.times < end)
-    times = np.concatenate([[begin], motion.times[inside], [end]])
-    ends = motion.at(np.array([begin, end]))
-    return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)
+    return Motion(*ways.cut(*motion, begin, end))
