@@ -148,14 +148,14 @@ def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[st
     method -> planner. own: method -> declared look.
     """
     looks = {
-        method: own.get(method) or LOOK_OF_PLANNER.get(planner)
+        method: own.get(method) or LOOK_OF_PLANNER.get(planner, "")
         for method, planner in planners.items()
     }
     for method, look in looks.items():
-        if look is None:
-            counts = Counter(filter(None, looks.values()))
+        if not look:
+            counts = Counter(looks.values())
             looks[method] = min(LOOKS, key=lambda name: counts[name])
-    return {method: str(look) for method, look in looks.items()}
+    return looks
 
 
 def choose_line_styles(
@@ -171,10 +171,10 @@ def choose_line_styles(
 
     names: list[str] = []
     for value in values:
-        own = looks.get(value)
+        own = looks.get(value, "")
         # Black last: it is the baseline's.
         free = [name for name in [*LOOKS][1:] if name not in names] or [*LOOKS]
-        names.append(own if own is not None and own not in names else free[0])
+        names.append(own if own and own not in names else free[0])
     colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE](np.linspace(0, _LIGHTEST, len(values)))

@@ -28,6 +28,7 @@ from bezierplan.running.columns import (
 )
 from bezierplan.running.guard import interface, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, begin
+from bezierplan.running.problems import Problems, Worlds
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces import seeds
@@ -80,10 +81,10 @@ def describe_chunk(chunk: Chunk) -> str:
 
 def run_tasks(
     chunk: Chunk,
-    problems: dict[str, Problem],
+    problems: Problems,
     tasks: Sequence[worker.Task],
     again: Sequence[worker.Task] = (),
-    worlds: dict[str, World] | None = None,
+    worlds: Worlds | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
     """Run tasks of a chunk's planner, as `worker.run_tasks` does: in this process, or in one of its
@@ -214,8 +215,8 @@ def build_row(
 def make_rows_again(
     chunk: Chunk,
     runs: list[tuple[Condition, int]],
-    problems: dict[str, Problem],
-    worlds: dict[str, World],
+    problems: Problems,
+    worlds: Worlds,
 ) -> list[Row]:
     """Repeat some runs and return their rows."""
     tasks = [build_task(chunk, *run) for run in runs]
@@ -228,7 +229,7 @@ def make_rows_again(
 
 
 def _build_judge(
-    chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
+    chunk: Chunk, problems: Problems, worlds: Worlds
 ) -> Callable[[Condition, int, worker.Reply], tuple[Row, Row]]:
     """Return a function that turns a worker's reply into a row and, for a drive, its trace."""
     # Built once: all runs on a problem are judged on the same region.
@@ -250,7 +251,7 @@ def _build_judge(
 
 
 def run_chunk(
-    problems: dict[str, Problem], chunk: Chunk, worlds: dict[str, World] | None = None
+    problems: Problems, chunk: Chunk, worlds: Worlds | None = None
 ) -> tuple[pa.Table, ...]:
     """Run a chunk; return tables of its runs and its times (columns as in `columns`), and of traces
     if the runs are drives.

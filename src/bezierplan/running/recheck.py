@@ -154,7 +154,7 @@ def read_versions() -> dict[str, str]:
     }
 
 
-def _read_problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+def _read_problems(file: str) -> tuple[problems.Problems, problems.Worlds]:
     """Read a file of problems. Raises ValueError if it is not one."""
     try:
         return problems.read(file)

@@ -21,7 +21,7 @@ from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.proof import describe_version
 from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
-from bezierplan.figures.page.page_job import PageJob
+from bezierplan.figures.page.page_job import Labels, PageJob
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
 
@@ -198,7 +198,7 @@ def format_value(value: Any, digits: int = 4) -> str:
     return naming.format_number(value, digits) if isinstance(value, float) else str(value)
 
 
-def label_keys(text: Any, labels: dict[str, str]) -> str:
+def label_keys(text: Any, labels: Labels) -> str:
     """Return text with the keys of methods and metrics replaced by their printed names.
 
     >>> label_keys("the method mga_c of a_study", {"mga_c": "MGA-C"})
@@ -236,7 +236,7 @@ def describe_positions(cells: Iterable[Row]) -> str:
     return text
 
 
-def build_grid(table: Row, labels: dict[str, str]) -> SimpleNamespace:
+def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
     """Lay the numbers of a table out in rows and columns.
 
     A row is a combination of keys, those of the default reading first; a column is a metric with a

@@ -16,7 +16,7 @@ from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
+from bezierplan.figures.page.page_job import FILES, ArtefactView, Labels, PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
 
@@ -96,7 +96,7 @@ def read_study_results(
     return pages
 
 
-def _describe_families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
+def _describe_families(of_problems: pd.DataFrame, labels: Labels) -> pd.DataFrame | None:
     """Return the methods of a study on each family of its problems, as words; None if there are
     none.
     """
@@ -142,7 +142,7 @@ def _describe_table(
     name: str,
     artefact: ArtefactView,
     folder: Path,
-    labels: dict[str, str],
+    labels: Labels,
     counted: pd.DataFrame,
     evidence: Evidence | None,
 ) -> Row:
@@ -166,7 +166,7 @@ def _describe_table(
     }
 
 
-def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
+def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
     """Say how columns of printed means differ from ours, in order or level."""
     told = []
     for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
@@ -207,7 +207,7 @@ def _list_numbers(
     spec: Pivot,
     counted: pd.DataFrame,
     many: pd.DataFrame,
-    labels: dict[str, str],
+    labels: Labels,
 ) -> list[Row]:
     """Return the cells of a table that have a published number, and other methods' cells in the
     same columns.
@@ -247,14 +247,14 @@ def _list_numbers(
     return cells
 
 
-def format_key(column: str, value: Any, labels: dict[str, str]) -> str:
+def format_key(column: str, value: Any, labels: Labels) -> str:
     """Return the value of a key column as printed; a number stands with its name."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
     return naming.format_value(value, column, labels)
 
 
-def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
+def _format_heading(metric: str, statistic: str, spec: Pivot, labels: Labels) -> str:
     """Return metric and statistic as the table prints them.
 
     An unstated statistic stands beside our median.
@@ -311,7 +311,7 @@ def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: Stu
     }
 
 
-def _describe_assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
+def _describe_assumption(study: str, row: Row, labels: Labels) -> Row:
     """Return a detail that the paper leaves open.
 
     default: one for all, or each with the names that have it.

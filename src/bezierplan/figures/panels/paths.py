@@ -31,7 +31,7 @@ from bezierplan.schema.model import (
     build_error,
 )
 from bezierplan.workspaces.kinds import of_length
-from bezierplan.workspaces.problem import Path, Workspace
+from bezierplan.workspaces.problem import Path
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -288,7 +288,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         home = options.find_workspace(frame, scene)
         unit = home.unit
         workspaces.draw_workspace(axes, home)
-        _draw_changes(axes, frame, home)
+        for part, look in _CHANGED.items():
+            cells = frame[frame["part"] == part].assign(size=getattr(home, "cell", None))
+            look = look | {"facecolor": "none", "linewidth": 0.9, "zorder": 1}
+            workspaces.draw_cells(axes, cells, look)
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
@@ -299,15 +302,6 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.view is not None:
         axes.axis(options.view)
     return note
-
-
-def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
-    """Draw the cells that differ from those of another problem."""
-    for part, look in _CHANGED.items():
-        cells = frame[frame["part"] == part]
-        if len(cells):
-            look = look | {"facecolor": "none", "linewidth": 0.9, "zorder": 1}
-            workspaces.draw_cells(axes, cells.assign(size=workspace.cell), look)
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

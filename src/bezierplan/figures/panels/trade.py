@@ -214,9 +214,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
     _scale_axes(axes, placed, sides, edges, of_bend)
     if len(line):
-        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
-        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
-        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
+        (look,) = style.choose_line_styles([_BASELINE], style.LOOK_OF_PLANNER)
+        look |= {"marker": "", "label": "rounded shortest path, any turning radius"}
+        axes.plot(line["x"], line["y"], **look)
     for _, rows, look in groups:
         _draw_method(axes, rows.iloc[0], look | {"linestyle": "none"})
     bend = f"tightest bend (1/{scene.unit})"

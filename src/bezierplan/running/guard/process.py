@@ -63,7 +63,7 @@ def run_isolated(
 def run_function(
     work: Callable[[Callable[[str], None]], Iterator[Any]],
     name: str,
-    limit: float | None = None,
+    limit: float | None,
     hashing: int = 0,
     starts: float = 0.0,
 ) -> list[Any]:
@@ -83,11 +83,14 @@ def run_function(
         job.write_bytes(pickle.dumps((name, work), protocol=5))
         lines.touch()
         empty.mkdir()
+        # This package first, then what the PYTHONPATH of this environment has.
+        python_path = [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]
+        own = {"PYTHONPATH": os.pathsep.join(filter(None, python_path))}
         with printed.open("wb") as output:
             process = subprocess.Popen(
                 [sys.executable, "-m", worker.__name__, job, lines],
                 cwd=empty,
-                env=os.environ | {"PYTHONHASHSEED": str(hashing), "PYTHONPATH": _build_path()},
+                env=os.environ | own | {"PYTHONHASHSEED": str(hashing)},
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -102,11 +105,6 @@ def run_function(
                 process.wait()
         _log(printed, name)
         return _read(lines, name, ended)
-
-
-def _build_path() -> str:
-    """Return the PYTHONPATH of the process: this package first, then that of this environment."""
-    return os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]))
 
 
 def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
