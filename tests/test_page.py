@@ -19,12 +19,12 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, SVG, job, page
 
-from bezierplan.figures.page import addresses, answer, build, charts, reader, runs
+from bezierplan.figures.page import addresses, build, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
-from bezierplan.running import rows as row_files
+from bezierplan.running import table_files
 from bezierplan.running.inputs import Files
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path as Curve
@@ -170,11 +170,11 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(c
 
 
 def test_a_scale_says_how_many_runs_it_has_and_where_the_evidence_is():
-    alone = answer.describe_scale("full", [[10, 30], [100, 100], []], False)
+    alone = overview.describe_scale("full", [[10, 30], [100, 100], []], False)
     assert alone.endswith(
         "as many runs as the papers report: 10 to 100 runs per method and condition."
     )
-    assert "docs/outcome" in answer.describe_scale("full", [[10, 30]], True)
+    assert "docs/outcome" in overview.describe_scale("full", [[10, 30]], True)
 
 
 def test_the_answer_to_a_paper_stands_first_and_at_its_head(text):
@@ -228,7 +228,7 @@ def stored(folder, lengths, feasible, **more):
         "room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5)
     )
     problem_files.write({"room": room}, {"room": "room"}, str(folder / "p.parquet"))
-    row_files.write(
+    table_files.write(
         problem_files.compute_bounds({"room": room}, {}), str(folder / "p.bounds.parquet")
     )
     row = {"problem": "room", "method": "m", "claimed_feasible": True, "collision_depth": 0.0}

@@ -30,7 +30,7 @@ NEUTRAL = {
         "places",
         "machine.digest",
         "machine.kernel_cache",
-        "machine.opened",
+        "machine.opened_files",
         "running.jobs.log",
     )
 }

@@ -18,7 +18,7 @@ from bezierplan.geometry.checker.hulls import LARGEST_DEGREE
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.words import describe_in_one_line
+from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}

@@ -14,7 +14,7 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, build_region
 from bezierplan.planners import is_file
-from bezierplan.running import answer, rides, rows
+from bezierplan.running import answer, drives, table_files
 from bezierplan.running.chunk import Chunk, Condition, Settings
 from bezierplan.running.columns import (
     ANSWER,
@@ -135,7 +135,7 @@ def drive_again(
     Raises ValueError if it ends in another path than its row.
     """
     ride = run(chunk, *_find_condition(chunk, row), problem, world)
-    _refuse_other_path(row, rides.trace_path(ride).points)
+    _refuse_other_path(row, drives.trace_path(ride).points)
     return ride, motion_check.check(ride.motion, world)
 
 
@@ -244,7 +244,7 @@ def _build_judge(
                 chunk, condition, repeat, result, drew, problems[name], regions[name]
             ), {}
         known = identify_run(chunk, condition, repeat)
-        outcome, trace = rides.judge_drive(result, drew, problems[name], worlds[name])
+        outcome, trace = drives.judge_drive(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
     return judge_reply
@@ -290,7 +290,7 @@ def run_chunk(
             continue
         times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
         if moving:
-            times |= rides.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
+            times |= drives.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
     if failures:
         raise PlannerFailure("\n".join(failures))
@@ -305,10 +305,12 @@ def run_chunk(
             f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True
         )
     if not moving:
-        return rows.build_table(runs, Planned, Outcome), rows.build_table(times, Times)
+        return table_files.build_table(runs, Planned, Outcome), table_files.build_table(
+            times, Times
+        )
     return (
-        rows.build_table(runs, Planned, Outcome, DriveOutcome),
-        rows.build_table(times, Times, DriveTimes),
+        table_files.build_table(runs, Planned, Outcome, DriveOutcome),
+        table_files.build_table(times, Times, DriveTimes),
         pa.Table.from_pylist(traces),
     )
 

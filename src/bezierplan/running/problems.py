@@ -172,10 +172,10 @@ def read(file: str) -> tuple[Problems, Worlds]:
     """Read the problems of a file, by name, in file order, and the worlds of those that move.
     Problems in one workspace share its object.
     """
-    from bezierplan.running import rows
+    from bezierplan.running import table_files
 
     # The process that reads problems may be forked, which threads forbid.
-    table = rows.read(file, threads=False).to_pylist()
+    table = table_files.read(file, threads=False).to_pylist()
     drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
         row["problem"]: Problem(
@@ -194,7 +194,7 @@ def compute_bounds(problems: Problems, moving: Worlds) -> "pa.Table":
     """Return a table with the straight line and the exact shortest path of each problem; where it
     moves, with a length and a time that no robot can beat, and no octile bound.
     """
-    from bezierplan.running import rows
+    from bezierplan.running import table_files
 
     made = []
     for name, problem in problems.items():
@@ -215,7 +215,7 @@ def compute_bounds(problems: Problems, moving: Worlds) -> "pa.Table":
         if world:
             row |= DriveBound(bounds.bound_arrival(world, problem))._asdict()
         made.append(row)
-    return rows.build_table(made, Bound, *([DriveBound] if moving else []))
+    return table_files.build_table(made, Bound, *([DriveBound] if moving else []))
 
 
 def _compute_cell_bound(problem: Problem) -> float:

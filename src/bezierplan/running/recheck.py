@@ -3,7 +3,7 @@ some runs.
 
 Judging calls no planner: a path is read from its row, and judged on the workspace in the file of
 problems, in a process where no planner has run. What no path determines, such as a planner's
-objective, is covered by the digest of each file (`rows`), and by the runs that are repeated
+objective, is covered by the digest of each file (`table_files`), and by the runs that are repeated
 (`run_again`). The motion of repeated drives is checked too.
 """
 
@@ -24,11 +24,11 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import build_region
 from bezierplan.machine.digest import COMPUTING, find_library_version
-from bezierplan.running import answer, execution, problems, rows
+from bezierplan.running import answer, execution, problems, table_files
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned, Row
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
-from bezierplan.schema.words import escape
+from bezierplan.schema.safe_text import escape
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
@@ -159,7 +159,7 @@ def _read_problems(file: str) -> tuple[problems.Problems, problems.Worlds]:
     try:
         return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
-        raise rows.describe_misplaced(file, "not a whole file of problems") from None
+        raise table_files.describe_misplaced(file, "not a whole file of problems") from None
 
 
 def judge(task: StoredRuns) -> RunsVerdict:
@@ -173,18 +173,18 @@ def judge(task: StoredRuns) -> RunsVerdict:
     by_method: dict[str, dict[tuple, dict[str, tuple[Any, float]]]] = {}
     for file, chunk in task.runs.items():
         try:
-            table = rows.read(file)
+            table = table_files.read(file)
         except ValueError as error:
             faults.append(describe_error(file, error))
             continue
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-        kept, digest = rows.read_digest(table), rows.compute_digest(table)
+        kept, digest = table_files.read_digest(table), table_files.compute_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         # Rows that were changed are not judged: they could hold anything.
         if kept != digest:
             faults.append(Difference(file, "other rows than were written"))
-        elif fault := rows.find_fault(table.schema, *declared):
-            faults.append(describe_error(file, rows.describe_misplaced(file, fault)))
+        elif fault := table_files.find_fault(table.schema, *declared):
+            faults.append(describe_error(file, table_files.describe_misplaced(file, fault)))
         else:
             stored = table.to_pylist()
             of_file = [*_find_identity_faults(file, stored, chunk)]
@@ -342,8 +342,8 @@ def _run_file_again(of: tuple[str, str, Chunk], digest: str, share: int) -> Runs
     except (PlannerFailure, ValueError) as error:
         return RunsVerdict((Difference(file, f"cannot be made again: {error}"),))
     faults = []
-    for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
-        for name, value in rows.build_table([row], Planned, Outcome).to_pylist()[0].items():
+    for row, stored in zip(remade, table_files.read(file).take(numbers).to_pylist()):
+        for name, value in table_files.build_table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number has all its bits; and a NaN, unlike itself as a number, has equal
             # text.
             if repr(value) != repr(stored.get(name)):

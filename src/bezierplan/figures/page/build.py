@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.sentences import describe_metric
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.proof import describe_version
-from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
+from bezierplan.figures.page import HERE, addresses, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import Labels, PageJob
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
@@ -69,7 +69,7 @@ def gather_content(
         verified = json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.describe_scale(job.scale, repeats, bool(evidence)),
+        about_scale=overview.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else describe_version(),
         headline=_write_headline(job, tables, evidence),
         verified=verified,
@@ -155,12 +155,12 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "positions": describe_positions,
         "range_text": comparison.format_range,
         "packed": pack,
-        "failing": answer.select_failing,
+        "failing": overview.select_failing,
         "labelled": label_keys,
     }
     environment.globals |= {
         "address": addresses.build_address,
-        "answer": answer,
+        "overview": overview,
         "baseline": methods.BASELINE,
         "charts": charts,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),

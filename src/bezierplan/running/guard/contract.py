@@ -20,7 +20,7 @@ from bezierplan.planners import Plan, is_file, list_planners
 from bezierplan.running import answer
 from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.guard import interface, plain, process, worker
+from bezierplan.running.guard import interface, plain_values, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, suggest_closest
 from bezierplan.workspaces.circles import Circles
@@ -256,7 +256,7 @@ def _compare_repeats(first: Plan, again: Plan) -> str:
     """Describe the first field in which two runs with the same seed differ in any bit; empty if
     none does.
     """
-    one, other = ([*map(repr, plain.pack(plan)["Plan"])] for plan in (first, again))
+    one, other = ([*map(repr, plain_values.pack(plan)["Plan"])] for plan in (first, again))
     field = next((name for name, *two in zip(Plan._fields, one, other) if two[0] != two[1]), "")
     return field and (
         f"{field}: another value from the same generator; all random numbers come from rng, and "

@@ -18,7 +18,7 @@ from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, suggest_closest
-from bezierplan.schema.words import LONGEST, describe_in_one_line, escape
+from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons

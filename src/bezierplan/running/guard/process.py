@@ -21,9 +21,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bezierplan.machine import opened
+from bezierplan.machine import opened_files
 from bezierplan.places import PACKAGE
-from bezierplan.running.guard import plain, worker
+from bezierplan.running.guard import plain_values, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, describe_end
 
 logger = logging.getLogger(__name__)
@@ -57,7 +57,7 @@ def run_isolated(
     todo = partial(worker.yield_plain_answers, work=work, tasks=tasks, again=again)
     for each in run_function(todo, name, limit, hashing, _STARTS):
         reply = worker.Reply(*each)
-        yield reply._replace(result=plain.unpack(reply.result))
+        yield reply._replace(result=plain_values.unpack(reply.result))
 
 
 def run_function(
@@ -156,7 +156,7 @@ def _read(lines: Path, name: str, end: str) -> list[Any]:
         elif kind == "fails":
             failures.setdefault(*value)
         else:
-            opened.SEEN.update(value)
+            opened_files.SEEN.update(value)
             break
     else:
         # Without its last line, the process did not come to its end.
