@@ -261,7 +261,7 @@ EDITS = [
     (f"{SRC}running/execution.py", CODE, True),
     (f"{SRC}running/columns.csv", put("least distance", "distance"), True),
     (f"{SRC}running/jobs/log.py", CODE, False),
-    (f"{SRC}machine/opened.py", CODE, False),
+    (f"{SRC}machine/opened_files.py", CODE, False),
     (f"{SRC}geometry/region.py", CODE, True),
     (f"{SRC}analysis/claims/kinds/lower.py", CODE, True),
     (f"{SRC}analysis/claims/kinds/untestable.py", CODE, False),

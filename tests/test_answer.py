@@ -13,7 +13,7 @@ from bezierplan.planners import Plan
 from bezierplan.running import answer, execution, planning, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.guard import plain
+from bezierplan.running.guard import plain_values
 from bezierplan.workspaces.problem import Path
 
 LINE = np.array([DISC.start, DISC.target])
@@ -191,7 +191,7 @@ def test_text_holds_all_bits_of_a_plan(plan):
     given = answer.convert_answer(
         plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0]))
     )
-    again = plain.unpack(json.loads(json.dumps(plain.pack(given))))
+    again = plain_values.unpack(json.loads(json.dumps(plain_values.pack(given))))
     assert repr(again) == repr(given)
 
 

@@ -10,7 +10,7 @@ from studies import studies
 
 from bezierplan.analysis import results
 from bezierplan.analysis.run_tables import compute_table_digest
-from bezierplan.running import columns, problems, rows
+from bezierplan.running import columns, problems, table_files
 from bezierplan.running.inputs import Files
 from bezierplan.study import captions, definition, jobs
 from bezierplan.study.experiments import Experiment, Method
@@ -97,7 +97,7 @@ def chunks(tmp_path):
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
-    rows.write(problems.compute_bounds(described, {}), str(tmp_path / "bounds.parquet"))
+    table_files.write(problems.compute_bounds(described, {}), str(tmp_path / "bounds.parquet"))
     for method in ("mine", "other"):
         folder = tmp_path / "runs" / "first" / method
         folder.mkdir(parents=True)
@@ -115,12 +115,12 @@ def chunks(tmp_path):
                 {"id": run["id"], "cpu_s": run["repeat"] / 100, "wall_s": run["repeat"] / 50}
                 for run in reversed(runs)
             ]
-            rows.write(
-                rows.build_table(runs, columns.Planned, columns.Outcome),
+            table_files.write(
+                table_files.build_table(runs, columns.Planned, columns.Outcome),
                 str(folder / f"{chunk}.parquet"),
             )
             parquet.write_table(
-                rows.build_table(times, columns.Times), folder / f"{chunk}.times.parquet"
+                table_files.build_table(times, columns.Times), folder / f"{chunk}.times.parquet"
             )
     return tmp_path
 
@@ -138,10 +138,12 @@ def test_a_digest_is_of_all_rows_in_any_order(chunks):
     files = sorted((chunks / "runs/first/mine").glob("[0-9].parquet"))
     digest = compute_table_digest(files)
     assert compute_table_digest(files[::-1]) == digest
-    table = rows.read(str(files[0])).to_pylist()
+    table = table_files.read(str(files[0])).to_pylist()
     for row in table:
         changed = [each | {"length": 3.0} if each is row else each for each in table]
-        rows.write(rows.build_table(changed, columns.Planned, columns.Outcome), str(files[0]))
+        table_files.write(
+            table_files.build_table(changed, columns.Planned, columns.Outcome), str(files[0])
+        )
         assert compute_table_digest(files) != digest
 
 
@@ -224,7 +226,7 @@ def test_a_file_in_the_place_of_another_is_told(chunks, fault):
                 if value is None
                 else table.append_column(column, pa.array([value] * len(table)))
             )
-        rows.write(table, str(chunks / place))
+        table_files.write(table, str(chunks / place))
     else:
         (chunks / place).write_bytes(
             content if isinstance(content, bytes) else (chunks / content).read_bytes()

@@ -10,7 +10,7 @@ from chunks import CHUNK, MADE
 
 from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.planners import PLACE
-from bezierplan.running import columns, execution, problems, rows
+from bezierplan.running import columns, execution, problems, table_files
 
 BLOCKED = {"blocked": MADE["blocked"]}
 
@@ -32,10 +32,10 @@ def test_a_row_has_the_declared_columns_and_no_other():
     )
     assert set(runs.column_names) == {*columns.PLANNED, *columns.RESULTS, "layout"}
     assert "layout" in PLACE
-    assert rows.find_fault(runs.schema, *columns.TABLES["runs"].every) == ""
-    assert rows.find_fault(times.schema, *columns.TABLES["times"].every) == ""
+    assert table_files.find_fault(runs.schema, *columns.TABLES["runs"].every) == ""
+    assert table_files.find_fault(times.schema, *columns.TABLES["times"].every) == ""
     assert (
-        rows.find_fault(
+        table_files.find_fault(
             problems.compute_bounds(BLOCKED, {}).schema, *columns.TABLES["bounds"].every
         )
         == ""
@@ -47,25 +47,25 @@ ROW = {"id": "a", "cpu_s": 1.0, "wall_s": 2.0}
 
 def test_a_table_has_declared_types_whatever_its_values():
     """Without a path, points are an empty list, and whole seconds are no integers."""
-    table = rows.build_table([ROW | {"cpu_s": 1, "setting": 3}, ROW], columns.Times)
+    table = table_files.build_table([ROW | {"cpu_s": 1, "setting": 3}, ROW], columns.Times)
     assert [str(each.type) for each in table.schema] == ["string", "double", "double", "int64"]
     empty = columns.Bound("a", 1.0, np.inf, np.inf, [], np.nan)._asdict()
-    assert rows.build_table([empty], columns.Bound).schema.field("bound_path").type == pa.list_(
-        pa.float64()
-    )
+    assert table_files.build_table([empty], columns.Bound).schema.field(
+        "bound_path"
+    ).type == pa.list_(pa.float64())
 
 
 def test_a_table_without_a_declared_column_or_with_another_type_is_refused():
     with pytest.raises(KeyError, match="wall_s"):
-        rows.build_table([ROW, {"id": "b", "cpu_s": 1.0}], columns.Times)
+        table_files.build_table([ROW, {"id": "b", "cpu_s": 1.0}], columns.Times)
     with pytest.raises((pa.ArrowInvalid, pa.ArrowTypeError)):
-        rows.build_table([ROW | {"cpu_s": "fast"}], columns.Times)
+        table_files.build_table([ROW | {"cpu_s": "fast"}], columns.Times)
 
 
 def test_a_digest_does_not_depend_on_the_type_of_no_values():
     """Files of version 1.0.0 hold lists of nothing where no run has a path."""
     untyped = pa.table({"path_points": [[], []]})
-    assert rows.compute_digest(untyped) == rows.compute_digest(
+    assert table_files.compute_digest(untyped) == table_files.compute_digest(
         untyped.cast(pa.schema({"path_points": pa.list_(pa.float64())}))
     )
 

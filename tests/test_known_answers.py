@@ -27,7 +27,7 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.numbers import comparison
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.planners import warm_swarm
-from bezierplan.running import rides
+from bezierplan.running import drives
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.workspaces.circles import Circles
@@ -271,7 +271,7 @@ def test_a_corner_turns_by_more_than_a_millionth(turn, corners):
 def test_times_of_plans_after_the_first():
     """Mean, 95th percentile, largest, and how many took longer than a step."""
     plans = [SimpleNamespace(seconds=seconds) for seconds in (9.0, 0.1, 0.1, 0.5, 0.6)]
-    found = rides.replan_times(SimpleNamespace(plans=plans), 0.5)
+    found = drives.replan_times(SimpleNamespace(plans=plans), 0.5)
     assert found == pytest.approx((0.325, 0.585, 0.6, 1))
 
 

@@ -13,7 +13,7 @@ from bezierplan.analysis import metrics, results
 from bezierplan.analysis.run_tables import is_equal
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
-from bezierplan.running import execution, problems, rides
+from bezierplan.running import drives, execution, problems
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.schema.checked import Fault
@@ -250,7 +250,7 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, e
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = rides.judge_drive(ride, True, *room)
+    row, _ = drives.judge_drive(ride, True, *room)
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -265,9 +265,9 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     ride = Ride(
         Motion(points, np.arange(4.0)), True, 0.0, [DrivePlan(0.0, None, 10.0, 0.0, 0.0, 1)]
     )
-    verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
-    monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.judge_drive(ride, True, *room)
+    verdict = drives.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
+    monkeypatch.setattr(drives.motion_check, "check", lambda motion, world: verdict)
+    row, _ = drives.judge_drive(ride, True, *room)
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
@@ -275,7 +275,7 @@ def a_row(room, points, times):
     """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
     motion = Motion(np.array(points), np.array(times))
     ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)])
-    return rides.judge_drive(ride, True, *room)[0]
+    return drives.judge_drive(ride, True, *room)[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.

@@ -19,12 +19,12 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, SVG, job, page
 
-from bezierplan.figures.page import addresses, answer, build, charts, reader, runs
+from bezierplan.figures.page import addresses, build, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
-from bezierplan.running import rows as row_files
+from bezierplan.running import table_files
 from bezierplan.running.inputs import Files
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path as Curve
@@ -112,9 +112,9 @@ def test_numbers_stand_beside_published_ones_with_how_near_they_are(content):
     for end in ("low", "high"):
         assert first["bar"][end] == second["bar"][end], "one axis a column"
     assert second["bar"]["ours"] > first["bar"]["ours"]
-    assert math.isclose(second["apart"], 14 / 10.51 - 1)
+    assert (second["beside"], second["value_published"]) == (14, 10.51)
     assert [cell["counted"] for cell in (first, second, third, other)] == [True] * 3 + [False]
-    assert (other["value_published"], other["apart"]) == (None, None)
+    assert other["value_published"] is None
 
 
 def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_each_cell(content):
@@ -135,7 +135,7 @@ def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     empty = pd.DataFrame()
     (found,) = reader._list_numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
     assert found["beside"] == 5.5
-    assert math.isclose(found["apart"], 0.1)
+    assert math.isclose(found["beside"], 1.1 * found["value_published"])
 
 
 def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(content, folder):
@@ -170,11 +170,11 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(c
 
 
 def test_a_scale_says_how_many_runs_it_has_and_where_the_evidence_is():
-    alone = answer.describe_scale("full", [[10, 30], [100, 100], []], False)
+    alone = overview.describe_scale("full", [[10, 30], [100, 100], []], False)
     assert alone.endswith(
         "as many runs as the papers report: 10 to 100 runs per method and condition."
     )
-    assert "docs/outcome" in answer.describe_scale("full", [[10, 30]], True)
+    assert "docs/outcome" in overview.describe_scale("full", [[10, 30]], True)
 
 
 def test_the_answer_to_a_paper_stands_first_and_at_its_head(text):
@@ -228,7 +228,7 @@ def stored(folder, lengths, feasible, **more):
         "room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5)
     )
     problem_files.write({"room": room}, {"room": "room"}, str(folder / "p.parquet"))
-    row_files.write(
+    table_files.write(
         problem_files.compute_bounds({"room": room}, {}), str(folder / "p.bounds.parquet")
     )
     row = {"problem": "room", "method": "m", "claimed_feasible": True, "collision_depth": 0.0}

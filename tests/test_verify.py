@@ -21,7 +21,7 @@ from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import proof
 from bezierplan.machine import digest
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems, recheck, rows
+from bezierplan.running import execution, problems, recheck, table_files
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.study import stored
 from bezierplan.workspaces.grid import from_lines
@@ -113,7 +113,7 @@ def edited(file, column, change):
     changed = table.set_column(
         place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
     )
-    rows.write(changed, str(file))
+    table_files.write(changed, str(file))
 
 
 def listed(folder, name):
@@ -270,7 +270,7 @@ def test_runs_that_are_missing_without_a_list_are_named(results, capsys):
 
 
 def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, capsys):
-    table = rows.read(str(results / RUNS)).replace_schema_metadata()
+    table = table_files.read(str(results / RUNS)).replace_schema_metadata()
     names = table.column_names
     for name in ("id", "path_curve"):
         table = table.set_column(names.index(name), name, table[name].cast(pa.large_string()))
@@ -379,7 +379,7 @@ def tasks(tmp_path_factory):
     made = {}
     for name, (chunk, table) in runs.items():
         file = str(folder / f"{name}.runs.parquet")
-        rows.write(table, file)
+        table_files.write(table, file)
         made[name] = recheck.StoredRuns(files[name], {file: chunk})
     return made
 
@@ -444,7 +444,7 @@ FORGED = {
 @pytest.mark.parametrize("case", FORGED)
 def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, case):
     task, copy = on_a_copy(tasks["e"], tmp_path)
-    rows.write(FORGED[case](rows.read(copy)), copy)
+    table_files.write(FORGED[case](table_files.read(copy)), copy)
     assert re.search(r" rows; expected 4$|: id: stored ", str(recheck.judge(task).faults[0]))
 
 
@@ -479,7 +479,7 @@ FOREIGN = {
 def test_a_foreign_table_is_refused(tasks, tmp_path, case):
     change, fault = FOREIGN[case]
     task, copy = on_a_copy(tasks["e"], tmp_path)
-    rows.write(change(parquet.read_table(copy)), copy)
+    table_files.write(change(parquet.read_table(copy)), copy)
     (found,) = recheck.judge(task).faults
     assert str(found).startswith(f"{copy}: {fault}; delete it and start again")
 

@@ -31,6 +31,7 @@ from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
 from bezierplan.workspaces.grown import original
+from bezierplan.workspaces.limits import Place
 from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 from bezierplan.workspaces.sound import check_map
@@ -85,7 +86,7 @@ class Judgement:
     path: Path | None = field(repr=False, default=None)
     length: float = math.nan
     feasible: bool = False
-    collision: tuple[float, float] | None = None
+    collision: Place | None = None
     depth: float = math.nan
     clearance: float = math.nan
     curvature: float = math.nan
@@ -94,7 +95,7 @@ class Judgement:
     shortest: float
     shortest_points: np.ndarray = field(repr=False)
     robot_radius: float
-    via: tuple[tuple[float, float], ...] = ()
+    via: tuple[Place, ...] = ()
 
     @property
     def gap(self) -> float:
@@ -449,7 +450,7 @@ def plan(
     *,
     seed: int = 0,
     robot_radius: float = 0.0,
-    via: Sequence[tuple[float, float]] = (),
+    via: Sequence[Place] = (),
     **settings: Any,
 ) -> Answer:
     """Plan one path and judge it by exact geometry.
@@ -566,7 +567,7 @@ def _answer(
     repeats: int,
     seed: int = 0,
     robot_radius: float = 0.0,
-    via: Sequence[tuple[float, float]] = (),
+    via: Sequence[Place] = (),
     settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> list[Answer]:
     """Return the answers of a method to problems: `repeats` for each, with seeds in a row, or one
@@ -884,11 +885,7 @@ def answer_of(rerun: Any, run: str) -> Answer:
     return Answer(**answers.judge_run(rerun, run))
 
 
-def _draw_html(home: Problem | Workspace) -> str:
-    """Return the picture of a map or a problem, for notebooks."""
-    return drawn_path.build_html("", partial(drawn_path.draw, home))
-
-
 # Maps and problems lie in a layer below that of figures.
 for kind in (Problem, *get_args(Workspace)):
-    kind.plot, kind._repr_html_ = drawn_path.draw, _draw_html
+    kind.plot = drawn_path.draw
+    kind._repr_html_ = lambda home: drawn_path.build_html("", home.plot)

@@ -5,7 +5,6 @@ import shlex
 import sys
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 
 # The package of this tree, even if another is installed: for this process and for the scripts of
 # jobs. Kernels use one thread; Snakemake does the parallel part.
@@ -20,6 +19,7 @@ from bezierplan.places import set_kernel_target
 set_kernel_target()
 
 from snakemake.cli import get_argument_parser
+from snakemake.iocontainers import Wildcards
 
 from bezierplan.analysis import markdown
 from bezierplan.running.jobs import forks, watchdog
@@ -199,20 +199,14 @@ def params_of(job):
 
 
 @cache
-def made(make, names):
-    others = dict(names)
-    place = others.pop("study", None)
-    return make(PLACES[place] if place else OF_SCALE[others["scale"]], **others)
-
-
-def build(make, names):
+def build(make, scale, study=None, tree=None, **names):
     """The job that a function makes of the study at a place, or of all those of a scale."""
-    return made(make, tuple(sorted((name, names[name]) for name in names if name != "tree")))
+    return make(PLACES[study] if study else OF_SCALE[scale], scale=scale, **names)
 
 
 def of(make, **more):
     """The same for the wildcards of a rule."""
-    return lambda wildcards: build(make, {**dict(wildcards), **more})
+    return lambda wildcards: build(make, **dict(wildcards), **more)
 
 
 @cache
@@ -370,8 +364,8 @@ def judged(wildcards):
     makes += [of(jobs.build_methods)] if summed(wildcards.scale) else []
     parts = [results(job)(wildcards) for job in makes]
     for place in below(wildcards.scale):
-        names = SimpleNamespace(scale=wildcards.scale, study=place)
-        parts.append(results(lambda names: build(jobs.build_claims, vars(names)))(names))
+        names = Wildcards(fromdict={"scale": wildcards.scale, "study": place})
+        parts.append(results(of(jobs.build_claims))(names))
     return {kind: [*dict.fromkeys(file for part in parts for file in part[kind])] for kind in KINDS}
 
 
@@ -381,7 +375,6 @@ def listed(wildcards):
         **judged(wildcards),
         "shown": shown(wildcards),
         "summary": summed(wildcards.scale),
-        "methods": [f"results/{wildcards.scale}/methods.csv"] if summed(wildcards.scale) else [],
         "below": [
             f"results/{wildcards.scale}/{place}/{name}.csv"
             for place in below(wildcards.scale)

@@ -16,7 +16,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.material import Material, StudyForClaims
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
-from bezierplan.machine import opened
+from bezierplan.machine import opened_files
 from bezierplan.machine.digest import (
     compute_content_digest,
     describe_code,
@@ -66,10 +66,10 @@ class Job(ABC):
         """Run the job, and keep which files the code of a study opens meanwhile."""
         files = [name for name in self.list_modules() if is_file(name)]
         if files:
-            opened.watch()
+            opened_files.watch()
         self.run(input_files, output_files)
         if files:
-            opened.keep(self.key, [*find_sources(*files), *self.sources])
+            opened_files.keep(self.key, [*find_sources(*files), *self.sources])
 
     @cached_property
     def account(self) -> dict[str, str]:
@@ -98,8 +98,8 @@ class Job(ABC):
         """Return the account by which a job runs again: with those files that have changed since
         the code of a study first opened them. Before its first run nobody knows them.
         """
-        first = opened.read_kept(self.key)
-        now = opened.hash_contents(first)
+        first = opened_files.read_kept(self.key)
+        now = opened_files.hash_contents(first)
         return self.account | {name: now[name] for name in now if now[name] != first[name]}
 
 
@@ -130,10 +130,10 @@ class Bounds(Job):
 
     def run(self, input_files, output_files):
         """Compute the bounds of all problems."""
-        from bezierplan.running import problems, rows
+        from bezierplan.running import problems, table_files
 
         table = problems.compute_bounds(*problems.read(input_files.problems))
-        rows.write(table, output_files[0])
+        table_files.write(table, output_files[0])
 
 
 @dataclass(frozen=True)
@@ -150,11 +150,11 @@ class Runs(Job):
         """Run the method, or let the robot drive."""
         import pyarrow.parquet as parquet
 
-        from bezierplan.running import execution, problems, rows
+        from bezierplan.running import execution, problems, table_files
 
         built, moving = problems.read(input_files.problems)
         tables = execution.run_chunk(built, self.chunk, moving)
-        rows.write(tables[0], output_files.runs)
+        table_files.write(tables[0], output_files.runs)
         parquet.write_table(tables[1], output_files.times)
         for traces in tables[2:]:
             parquet.write_table(traces, output_files.traces, compression="zstd")
@@ -424,7 +424,7 @@ class Verification(Job):
             "accounts": [
                 (["verified.json"], self.account),
                 *(
-                    (files, account | opened.hash_contents(opened.read_kept(key)))
+                    (files, account | opened_files.hash_contents(opened_files.read_kept(key)))
                     for files, key, account in self.accounts
                 ),
             ],

@@ -8,9 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.running import answer
+from bezierplan.running import answer, table_files
 from bezierplan.running import problems as problem_files
-from bezierplan.running import rows as row_files
 from bezierplan.running.chunk import Chunk, find_chunk_files
 from bezierplan.running.columns import ANSWER, TABLES
 from bezierplan.running.inputs import Files, group_by_table
@@ -47,11 +46,11 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
     """
     table = pd.concat(_read_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    known, bounded = row_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
+    known, bounded = table_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
     # A file of another experiment may lie in the place of this one.
     for file, rows in ((files.problems, known), (files.bounds, bounded)):
         if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
-            raise row_files.describe_misplaced(file, "not of the problems that the runs are of")
+            raise table_files.describe_misplaced(file, "not of the problems that the runs are of")
     problems, moving = problem_files.read(files.problems)
     return join_bounds(table, problems, bounded)._replace(worlds=moving)
 
@@ -82,16 +81,16 @@ def _read_chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd
             rows = _read(file, "runs")
             for column, own in (("experiment", experiment), ("method", method)):
                 if others := set(rows[column]) - {own}:
-                    raise row_files.describe_misplaced(
+                    raise table_files.describe_misplaced(
                         file, f"of {column} {min(others)}, not {own}"
                     )
             if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
-                raise row_files.describe_misplaced(file, "the runs of another chunk")
+                raise table_files.describe_misplaced(file, "the runs of another chunk")
             seen.update(rows["id"])
             beside = str(PurePath(file).with_suffix(".times.parquet"))
             times = _read(beside, "times")
             if sorted(times["id"]) != sorted(rows["id"]):
-                raise row_files.describe_misplaced(
+                raise table_files.describe_misplaced(
                     beside, f"not the times of {PurePath(file).name}"
                 )
             yield rows.merge(times, on="id", validate="one_to_one")
@@ -105,13 +104,13 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     """Read the rows of a file. Raises ValueError, naming the file, if its runs or bounds were
     edited, or if it lacks a declared column or has it in another type.
     """
-    table, declared = row_files.read(file), TABLES[kind]
+    table, declared = table_files.read(file), TABLES[kind]
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
-    if fault := row_files.find_fault(table.schema, *declared.every, *drives):
-        raise row_files.describe_misplaced(file, fault)
+    if fault := table_files.find_fault(table.schema, *declared.every, *drives):
+        raise table_files.describe_misplaced(file, fault)
     # Times are written without a digest.
-    if kind != "times" and row_files.read_digest(table) != row_files.compute_digest(table):
-        raise row_files.describe_misplaced(file, "its rows are not those that were written")
+    if kind != "times" and table_files.read_digest(table) != table_files.compute_digest(table):
+        raise table_files.describe_misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 
 

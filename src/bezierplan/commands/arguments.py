@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NoReturn, get_args, get_origin
 
 from bezierplan.schema import checked
+from bezierplan.workspaces.limits import Place
 
-Place = tuple[float, float]
 Settings = dict[str, Any]
 
 

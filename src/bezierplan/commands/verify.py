@@ -8,7 +8,7 @@ from pathlib import Path
 from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import proof
 from bezierplan.commands import count_cores, find_study_path, read_config
-from bezierplan.machine import opened
+from bezierplan.machine import opened_files
 from bezierplan.places import shorten_path
 from bezierplan.running import recheck
 from bezierplan.study import reading, stored
@@ -98,7 +98,7 @@ def main(
 
 def _find_changes(job: Job | None, account: Mapping[str, str]) -> set[str]:
     """Return the names in which a listed file's account differs from that of its job now."""
-    now = job.account | opened.hash_contents(account) if job else {}
+    now = job.account | opened_files.hash_contents(account) if job else {}
     return {name for name in account.keys() | now if account.get(name) != now.get(name)}
 
 

@@ -79,15 +79,19 @@ class Figure(Model):
         description="a list of panels"
     )
 
+    def _collect_names(self, key: str) -> list[str]:
+        """Return the values of a key of its panels, in alphabetical order."""
+        return sorted({name for each in self.panels if (name := getattr(each, key, None))})
+
     @property
     def workspaces(self) -> list[str]:
         """Return the names of the workspaces that are drawn without runs."""
-        return sorted({name for each in self.panels if (name := getattr(each, "workspace", None))})
+        return self._collect_names("workspace")
 
     @property
     def problems(self) -> list[str]:
         """Return the names of the problems that are drawn without runs."""
-        return sorted({name for each in self.panels if (name := getattr(each, "problem", None))})
+        return self._collect_names("problem")
 
     @property
     def rerun(self) -> list[str]:
@@ -99,7 +103,7 @@ class Figure(Model):
     @property
     def claims(self) -> list[str]:
         """Return the ids of the claims that are drawn under all alternatives."""
-        return sorted({claim for panel in self.panels if (claim := getattr(panel, "claim", None))})
+        return self._collect_names("claim")
 
     @property
     def code(self) -> list[str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.figures import style
+from bezierplan.running.columns import Row
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 def collect_rows(
     results: Results,
     keys: list[str],
-    rows: Callable[[Results], Iterable[dict[str, Any]]],
+    rows: Callable[[Results], Iterable[Row]],
 ) -> pd.DataFrame:
     """Return a table with the rows of each group of runs, in the order of the keys.
 
@@ -57,7 +58,7 @@ def compute_summary(results: Results, keys: list[str], metric: str, statistic: s
     high95 (ends of the 95 % bootstrap interval), in the metric's unit.
     """
 
-    def build_row(group: Results) -> Iterable[dict[str, Any]]:
+    def build_row(group: Results) -> Iterable[Row]:
         numbers = list_values(group)
         key = [f"{column}={group.runs[column].iloc[0]}" for column in keys]
         rng = generator("/".join([metric, statistic, *key]))
@@ -81,7 +82,7 @@ def list_values(group: Results) -> np.ndarray:
     return np.sort(group.runs["value"].dropna().to_numpy())
 
 
-def find_constants(runs: pd.DataFrame) -> dict[str, Any]:
+def find_constants(runs: pd.DataFrame) -> Row:
     """Return the problem and the method of runs, each if they share one."""
     return {
         column: runs[column].iloc[0]

@@ -52,7 +52,6 @@ class Latex(Job):
 class FigureFiles(Job):
     """Draw a figure: pictures, the data drawn in them, and its caption with notes on the runs."""
 
-    study: str
     caption: str
     columns: int
     width: str
@@ -121,7 +120,7 @@ class FigureFiles(Job):
         functions = study_code.load_functions(self.code)
         checks = [by_reading.read_checks(file) for file in input_files.alternatives]
         under = [*zip(self.alternatives, checks, strict=True)]
-        sources = Sources(experiments, workspaces, functions, published, self.study, places, under)
+        sources = Sources(experiments, workspaces, functions, published, places, under)
         # Read back, so that pictures show exactly the content of the file.
         sheet.write_data(sheet.collect_data(self.panels, sources), output_files.data)
         figure = sheet.draw(

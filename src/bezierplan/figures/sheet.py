@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from bezierplan.figures import style
 from bezierplan.figures.layout import Layout
-from bezierplan.figures.panels import Note, Panel, Sources, load_kind
+from bezierplan.figures.panels import Panel, Sources, load_kind
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # A panel narrower than this, in inches, has smaller marks and fewer ticks.
@@ -86,9 +86,9 @@ def draw(
     its content. columns: panels per row. width: a key of `style.WIDTHS`.
     """
     rows, inches = math.ceil(len(panels) / columns), style.WIDTHS[width]
-    scene = scene._replace(
-        labels={name: _escape_dollars(text) for name, text in scene.labels.items()}
-    )
+    # A dollar would begin a formula of matplotlib.
+    labels = {name: text.replace("$", r"\$") for name, text in scene.labels.items()}
+    scene = scene._replace(labels=labels)
     letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]]
     if len(panels) == 1:
         letters = [""]
@@ -105,40 +105,21 @@ def draw(
             notes.append(kind.draw(axes, rows_of_panel, scene, panel))
             if scene.layout:
                 scene.layout.apply_to(axes, number)
-            _fit(
-                axes,
-                letter
-                + _write_heading(
-                    panel, rows_of_panel if several else rows_of_panel[[]], scene, notes[-1]
-                ),
-                inches / columns,
-            )
+            methods = rows_of_panel["method"].dropna().unique() if several else []
+            # A method is named only where other panels have others.
+            method = labels.get(methods[0], methods[0]) if len(methods) == 1 else ""
+            title = (panel.title or "").replace("$", r"\$")
+            first = ", ".join(filter(None, [title, method]))
+            heading = "\n".join(filter(None, [first, notes[-1].heading]))
+            _fit(axes, letter + heading, inches / columns)
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
-    captions = [_join_clauses(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
-    captions[0] = " ".join(filter(None, [captions[0], _describe_equal_paths(letters, frame)]))
-    figure.set_label("\n".join(filter(None, captions)))
+    caption = _join_clauses(letters, [note.caption for note in notes])
+    glance = _join_clauses(letters, [note.glance for note in notes])
+    caption = " ".join(filter(None, [caption, _describe_equal_paths(letters, frame)]))
+    figure.set_label("\n".join(filter(None, [caption, glance])))
     return figure
-
-
-_PARTS = "caption", "glance"
-
-
-def _escape_dollars(text: str) -> str:
-    """Return text in which a dollar begins no formula of matplotlib."""
-    return text.replace("$", r"\$")
-
-
-def _write_heading(panel: Panel, frame: pd.DataFrame, scene: FigureScene, note: Note) -> str:
-    """Return a panel's title with its method and the few words of its note.
-
-    The method is named only if the panel has one and other panels have others.
-    """
-    methods = frame["method"].dropna().unique() if "method" in frame else []
-    method = scene.labels.get(methods[0], methods[0]) if len(methods) == 1 else ""
-    title = ", ".join(filter(None, [_escape_dollars(panel.title or ""), method]))
-    return "\n".join(filter(None, [title, note.heading]))
 
 
 def _fit(axes: Axes, heading: str, width: float) -> None:
@@ -235,20 +216,19 @@ def _describe_equal_paths(letters: list[str], frame: pd.DataFrame) -> str:
     return " ".join(f"{panels} show the same path." for panels in same)
 
 
-def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = None) -> None:
-    """Save a figure as svg and, if they are asked for, as png (300 dots per inch) and pdf.
+def save(figure: Figure, *files: str) -> None:
+    """Save a figure in files, each as its ending says: svg, png (300 dots per inch) or pdf.
 
     Equal drawings give equal bytes at any time. Each picture has its caption in its metadata.
     """
     caption = figure.get_label() or None
     # A date or a version would make equal drawings differ in their bytes.
     kinds = {
-        "svg": (svg, {"Date": None, "Creator": None, "Description": caption}),
-        "png": (png, {"Software": None} | ({"Description": caption} if caption else {})),
-        "pdf": (pdf, {"CreationDate": None, "Creator": None, "Producer": None, "Subject": caption}),
+        "svg": {"Date": None, "Creator": None, "Description": caption},
+        "png": {"Software": None} | ({"Description": caption} if caption else {}),
+        "pdf": {"CreationDate": None, "Creator": None, "Producer": None, "Subject": caption},
     }
     with mpl.rc_context(style.SETTINGS):
-        for kind, (file, metadata) in kinds.items():
-            if file:
-                dots = 300 if kind == "png" else "figure"
-                figure.savefig(file, format=kind, dpi=dots, metadata=metadata)
+        for file in files:
+            kind = file.rpartition(".")[2]
+            figure.savefig(file, dpi=300 if kind == "png" else "figure", metadata=kinds[kind])

@@ -141,23 +141,6 @@ _LEAST_SPAN = 0.003
 _LINEAR = 1e-3
 
 
-def choose_ground_colour(share: float) -> str:
-    """Return the colour of terrain, pale so that lines stand out.
-
-    share: the height, from 0 (lowest) to 1 (highest).
-    """
-    import matplotlib as mpl
-
-    return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
-
-
-def interval_band(colour: str) -> dict[str, Any]:
-    """Return the style of a line's interval: pale, with an edge that stays visible where bands
-    overlap.
-    """
-    return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
-
-
 def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
     """Return the name of the look of each method in all figures.
 
@@ -165,14 +148,14 @@ def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[st
     method -> planner. own: method -> declared look.
     """
     looks = {
-        method: own.get(method) or LOOK_OF_PLANNER.get(planner)
+        method: own.get(method) or LOOK_OF_PLANNER.get(planner, "")
         for method, planner in planners.items()
     }
     for method, look in looks.items():
-        if look is None:
-            counts = Counter(filter(None, looks.values()))
+        if not look:
+            counts = Counter(looks.values())
             looks[method] = min(LOOKS, key=lambda name: counts[name])
-    return {method: str(look) for method, look in looks.items()}
+    return looks
 
 
 def choose_line_styles(
@@ -188,10 +171,10 @@ def choose_line_styles(
 
     names: list[str] = []
     for value in values:
-        own = looks.get(value)
+        own = looks.get(value, "")
         # Black last: it is the baseline's.
         free = [name for name in [*LOOKS][1:] if name not in names] or [*LOOKS]
-        names.append(own if own is not None and own not in names else free[0])
+        names.append(own if own and own not in names else free[0])
     colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE](np.linspace(0, _LIGHTEST, len(values)))
@@ -209,13 +192,13 @@ def choose_line_styles(
 
 
 def list_groups(
-    frame: pd.DataFrame, column: str, where: dict[str, Any], scene: Any
+    frame: pd.DataFrame, column: str, options: Any, scene: Any
 ) -> list[tuple[Any, pd.DataFrame, dict[str, Any]]]:
     """Return the values of a column in the order of a panel, each with its rows and its style.
 
     The style has the printed name of the value as its label.
     """
-    values = list_in_order(frame[column], where)
+    values = list_in_order(frame[column], options.where)
     return [
         (
             value,
@@ -234,7 +217,7 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **mor
             axes.plot(own["x"], own["y"], **more | look)
 
 
-def scale_axis(axis: Any, scale: str = "linear", unit: str = "") -> None:
+def scale_axis(axis: Any, scale: str, unit: str) -> None:
     """Scale an axis of measured values and print plain numbers along it, lengths of time with their
     unit.
 

@@ -30,7 +30,7 @@ NEUTRAL = {
         "places",
         "machine.digest",
         "machine.kernel_cache",
-        "machine.opened",
+        "machine.opened_files",
         "running.jobs.log",
     )
 }
@@ -51,10 +51,6 @@ class _Module(NamedTuple):
     home: Path
     name: str
 
-    def file(self) -> Path | None:
-        """Return the module's source file, or None."""
-        return _find_file(self.home, self.name)
-
     def parents(self) -> set["_Module"]:
         """Return the packages that contain the module."""
         parts = self.name.split(".")
@@ -62,11 +58,11 @@ class _Module(NamedTuple):
 
 
 @cache
-def _find_file(home: Path, name: str) -> Path | None:
-    """Return the source file of a module, by its dotted name in a folder, or None."""
-    place = home.joinpath(*name.split("."))
+def _find_file(module: _Module) -> Path | None:
+    """Return the source file of a module, or None."""
+    place = module.home.joinpath(*module.name.split("."))
     # A file outside the package may have dots in its name.
-    places = (place.with_suffix(".py"), place / "__init__.py", home / f"{name}.py")
+    places = (place.with_suffix(".py"), place / "__init__.py", module.home / f"{module.name}.py")
     return next((file for file in places if file.is_file()), None)
 
 
@@ -122,7 +118,7 @@ def keep_json(content: Any, file: Path) -> None:
 
 def read_docstring(module: str) -> str:
     """Return the docstring of a module, which is read and not imported."""
-    return _parse_file(_read_module(module).file()).about
+    return _parse_file(_find_file(_read_module(module))).about
 
 
 def _parse(source: bytes) -> _Syntax:
@@ -171,7 +167,7 @@ def _find_imports(module: _Module) -> set[_Module]:
     """Return the modules that a module imports, with their packages: from this package and, for a
     file outside it, from the file's folder.
     """
-    file = module.file()
+    file = _find_file(module)
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
     modules = set()
     for level, base, name in _parse_file(file).imports:
@@ -182,7 +178,7 @@ def _find_imports(module: _Module) -> set[_Module]:
             # Modules next to this package are not part of it.
             if ours or module.home != PACKAGE.parent:
                 modules.add(_Module(PACKAGE.parent if ours else module.home, full))
-    found = {each for each in modules if each.file()}
+    found = {each for each in modules if _find_file(each)}
     return found.union(*(each.parents() for each in found))
 
 
@@ -217,7 +213,7 @@ def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, s
             name
             for _, base, part in imports
             for name in (base, f"{base}.{part}")
-            if name.split(".")[0] == ROOT and _read_module(name).file()
+            if name.split(".")[0] == ROOT and _find_file(_read_module(name))
         )
     reached = _find_reached(*sorted(named))
     versions = {name: find_library_version(name) for name in sorted(reached.libraries)}
@@ -245,21 +241,22 @@ def _find_reached(*modules: str) -> _Reach:
     """Return everything that modules depend on. Raises ValueError for a missing module."""
     todo, texts, libraries = [], {}, set()
     for module in map(_read_module, modules):
-        if module.file() is None:
+        if _find_file(module) is None:
             raise ValueError(f"no module {module.name} in {module.home}")
         todo += [module, *module.parents()]
     while todo:
         module = todo.pop()
-        if module not in texts and module.file() and module.name not in NEUTRAL:
+        file = _find_file(module)
+        if module not in texts and file and module.name not in NEUTRAL:
             # What a module declares may stand in a file of data with its name.
-            beside = module.file().with_suffix(".csv")
+            beside, syntax = file.with_suffix(".csv"), _parse_file(file)
             data = beside.read_text(encoding="utf-8") if beside.is_file() else ""
-            texts[module] = f"{module.name} {_parse_file(module.file()).tree}{data}"
+            texts[module] = f"{module.name} {syntax.tree}{data}"
             todo += _find_imports(module)
-            for level, base, _ in _parse_file(module.file()).imports:
+            for level, base, _ in syntax.imports:
                 libraries.update(COMPUTING.get(base.split(".")[0], ()) if not level else ())
     digest = _compute_digest("\n".join(sorted(texts.values())))
-    return _Reach(digest, libraries, [module.file() for module in texts])
+    return _Reach(digest, libraries, [*map(_find_file, texts)])
 
 
 @cache
@@ -277,5 +274,5 @@ def compute_content_digest(*files: str) -> str:
 @cache
 def name_state(module: str, file: str) -> str:
     """Return a name of the current state of a module, ours or the user's."""
-    ours = module.split(".")[0] == ROOT and _read_module(module).file() is not None
+    ours = module.split(".")[0] == ROOT and _find_file(_read_module(module)) is not None
     return f"{Path(file).stem}-{compute_source_digest(module if ours else file)}"

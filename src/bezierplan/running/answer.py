@@ -18,7 +18,7 @@ from bezierplan.geometry.checker.hulls import LARGEST_DEGREE
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.words import describe_in_one_line
+from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}
@@ -143,13 +143,21 @@ def restore_path(curve: str, points: Any) -> Path | None:
     return Path(curve, np.array(points, dtype=float).reshape(-1, 2)) if curve else None
 
 
-def judge_path(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
-    """Return the length and the verdict of a path; nan and `NO_PATH` without one."""
-    if path is None:
-        return math.nan, NO_PATH
-    pieces = curves.bezier_pieces(path)
-    check = checker.check(pieces, blocked)  # which refuses what has no length
-    return curves.length_of(pieces), check
+def judge_path(path: Path | None, blocked: Region) -> dict[str, Any]:
+    """Return the columns of a row that a path alone decides; nan and false without one."""
+    length, check = math.nan, NO_PATH
+    if path:
+        pieces = curves.bezier_pieces(path)
+        check = checker.check(pieces, blocked)  # which refuses what has no length
+        length = curves.length_of(pieces)
+    return {
+        "length": length,
+        "feasible": check.feasible,
+        "collision_at": check.collision_at,
+        "collision_depth": check.depth,
+        "clearance": check.clearance,
+        "clearance_error": check.tolerance,
+    }
 
 
 # --------------------------------------------------------------------------------------------------

@@ -4,12 +4,15 @@ import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
 
+Settings = dict[str, Any]
+"""Name -> value."""
+
 
 class Condition(NamedTuple):
     """A problem and the values of the varied settings."""
 
     problem: str
-    values: dict[str, Any]
+    values: Settings
 
     @property
     def name(self) -> str:
@@ -26,13 +29,13 @@ class Chunk(NamedTuple):
     experiment: str
     method: str
     planner: str
-    settings: dict[str, Any]
+    settings: Settings
     """The method's settings, except those that vary."""
-    problems: dict[str, dict[str, Any]]
+    problems: dict[str, Settings]
     """Name -> the problem's workspace, and its layout, obstacles and settings, if it has any."""
     vary: dict[str, list]
     """Setting or preset -> values; each combination of problems and values is a condition."""
-    presets: dict[str, dict[str, dict[str, Any]]]
+    presets: dict[str, dict[str, Settings]]
     """Preset -> value, as text -> the settings that it stands for."""
     seeds: str
     """Source of a run's seed: its id (`own`), its id without the method (`shared`), or study,
@@ -42,7 +45,7 @@ class Chunk(NamedTuple):
     """[first, last): the repeats to run."""
     time_limit: float | None = None
     """Seconds, compiling included, after which a run ends its job."""
-    policy: dict[str, Any] | None = None
+    policy: Settings | None = None
     """The robot's policy, as plain values, if the world moves."""
 
     def conditions(self) -> list[Condition]:

@@ -1,9 +1,9 @@
 """Columns of the runs tables, each declared once, as a line of columns.csv next to this file:
 table, name, type, meaning and unit.
 
-From these lines follow the types in files (`rows.build_table`), the check when a file is read
-(`rows.find_fault`), the names that are taken, the columns that a study may select by
-(`study.design`), and the tables in results/README.md (`python docs/tables_of_keys.py`).
+From these lines follow the types in files and the check when one is read (`table_files`), the names
+that are taken, the columns that a study may select by (`study.design`), and the tables in
+results/README.md (`python docs/tables_of_keys.py`).
 
 A row holds the columns that are known before its run (`Planned`, with the place of its problem
 after `problem` and its settings after `planner`), the outcome of the run (`Outcome`, for a drive
@@ -19,6 +19,9 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, NewType
 
 from bezierplan.planners import PLACE
+
+Row = dict[str, Any]
+"""A row of a table: column -> value."""
 
 RunName = NewType("RunName", str)
 

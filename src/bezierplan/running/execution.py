@@ -14,8 +14,8 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, build_region
 from bezierplan.planners import is_file
-from bezierplan.running import answer, rides, rows
-from bezierplan.running.chunk import Chunk, Condition
+from bezierplan.running import answer, drives, table_files
+from bezierplan.running.chunk import Chunk, Condition, Settings
 from bezierplan.running.columns import (
     ANSWER,
     TAKEN,
@@ -23,10 +23,12 @@ from bezierplan.running.columns import (
     DriveTimes,
     Outcome,
     Planned,
+    Row,
     Times,
 )
 from bezierplan.running.guard import interface, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, begin
+from bezierplan.running.problems import Problems, Worlds
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces import seeds
@@ -39,7 +41,7 @@ def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
     return f"{chunk.study}/{chunk.experiment}/{condition.name}/{chunk.method}/{repeat}"
 
 
-def resolve_settings(chunk: Chunk, condition: Condition) -> dict[str, Any]:
+def resolve_settings(chunk: Chunk, condition: Condition) -> Settings:
     """Return all settings of a chunk's method under a condition.
 
     Those of the problem come first, then the varied values. Presets expand to their settings;
@@ -79,10 +81,10 @@ def describe_chunk(chunk: Chunk) -> str:
 
 def run_tasks(
     chunk: Chunk,
-    problems: dict[str, Problem],
+    problems: Problems,
     tasks: Sequence[worker.Task],
     again: Sequence[worker.Task] = (),
-    worlds: dict[str, World] | None = None,
+    worlds: Worlds | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
     """Run tasks of a chunk's planner, as `worker.run_tasks` does: in this process, or in one of its
@@ -133,7 +135,7 @@ def drive_again(
     Raises ValueError if it ends in another path than its row.
     """
     ride = run(chunk, *_find_condition(chunk, row), problem, world)
-    _refuse_other_path(row, rides.trace_path(ride).points)
+    _refuse_other_path(row, drives.trace_path(ride).points)
     return ride, motion_check.check(ride.motion, world)
 
 
@@ -151,7 +153,7 @@ def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
         )
 
 
-def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
+def identify_run(chunk: Chunk, condition: Condition, repeat: int) -> Row:
     """Return the first columns of a row: the run's id and its parts, its place, and all
     settings.
     """
@@ -182,7 +184,7 @@ def build_row(
     drew: bool,
     problem: Problem,
     blocked: Region,
-) -> dict[str, Any]:
+) -> Row:
     """Build one row of the runs table from a planner's answer.
 
     drew: the run drew random numbers. blocked: the region of the problem's workspace. Raises
@@ -194,18 +196,12 @@ def build_row(
         plan = answer.accept_answer(plan, problem, [*TAKEN, *run.settings, *condition.values])
         answer.check_history(plan, interface.read_traits(chunk.planner).keeps_best)
     curve, points = answer.store_path(plan.path)
-    # The verdict is that of the points which the row holds.
-    length, check = answer.judge_path(answer.restore_path(curve, points), blocked)
     outcome = Outcome(
         drew=drew,
         objective=plan.objective,
-        length=length,
         claimed_feasible=plan.claimed_feasible,
-        feasible=check.feasible,
-        collision_at=check.collision_at,
-        collision_depth=check.depth,
-        clearance=check.clearance,
-        clearance_error=check.tolerance,
+        # The verdict is that of the points which the row holds.
+        **answer.judge_path(answer.restore_path(curve, points), blocked),
         evaluations=plan.evaluations,
         generations=len(plan.history) - 1,
         stop=plan.stop,
@@ -219,9 +215,9 @@ def build_row(
 def make_rows_again(
     chunk: Chunk,
     runs: list[tuple[Condition, int]],
-    problems: dict[str, Problem],
-    worlds: dict[str, World],
-) -> list[dict[str, Any]]:
+    problems: Problems,
+    worlds: Worlds,
+) -> list[Row]:
     """Repeat some runs and return their rows."""
     tasks = [build_task(chunk, *run) for run in runs]
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
@@ -233,8 +229,8 @@ def make_rows_again(
 
 
 def _build_judge(
-    chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
-) -> Callable[[Condition, int, worker.Reply], tuple[dict[str, Any], dict[str, Any]]]:
+    chunk: Chunk, problems: Problems, worlds: Worlds
+) -> Callable[[Condition, int, worker.Reply], tuple[Row, Row]]:
     """Return a function that turns a worker's reply into a row and, for a drive, its trace."""
     # Built once: all runs on a problem are judged on the same region.
     regions = (
@@ -248,14 +244,14 @@ def _build_judge(
                 chunk, condition, repeat, result, drew, problems[name], regions[name]
             ), {}
         known = identify_run(chunk, condition, repeat)
-        outcome, trace = rides.judge_drive(result, drew, problems[name], worlds[name])
+        outcome, trace = drives.judge_drive(result, drew, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
     return judge_reply
 
 
 def run_chunk(
-    problems: dict[str, Problem], chunk: Chunk, worlds: dict[str, World] | None = None
+    problems: Problems, chunk: Chunk, worlds: Worlds | None = None
 ) -> tuple[pa.Table, ...]:
     """Run a chunk; return tables of its runs and its times (columns as in `columns`), and of traces
     if the runs are drives.
@@ -294,7 +290,7 @@ def run_chunk(
             continue
         times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
         if moving:
-            times |= rides.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
+            times |= drives.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
     if failures:
         raise PlannerFailure("\n".join(failures))
@@ -309,10 +305,12 @@ def run_chunk(
             f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True
         )
     if not moving:
-        return rows.build_table(runs, Planned, Outcome), rows.build_table(times, Times)
+        return table_files.build_table(runs, Planned, Outcome), table_files.build_table(
+            times, Times
+        )
     return (
-        rows.build_table(runs, Planned, Outcome, DriveOutcome),
-        rows.build_table(times, Times, DriveTimes),
+        table_files.build_table(runs, Planned, Outcome, DriveOutcome),
+        table_files.build_table(times, Times, DriveTimes),
         pa.Table.from_pylist(traces),
     )
 
@@ -330,7 +328,7 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
 
 
 def refuse_unrepeatable(
-    repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
+    repetitions: Iterable[Row], row: Row, chunk: Chunk, deterministic: bool
 ) -> None:
     """Raise PlannerFailure, naming the run, unless its repetitions equal its row in every bit."""
     for again in repetitions:

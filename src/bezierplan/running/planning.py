@@ -13,8 +13,10 @@ import numpy as np
 from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Plan
 from bezierplan.running import answer, problems
+from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
+from bezierplan.workspaces.limits import Place
 from bezierplan.workspaces.problem import Path, Problem
 
 ROUNDED = "rounded_shortest_path"
@@ -42,7 +44,7 @@ def choose_rounding(names: Collection[str]) -> dict[str, float]:
     return {"turning_radius": math.inf, "excess": EXCESS}
 
 
-def split_into_legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
+def split_into_legs(problem: Problem, via: Sequence[Place]) -> list[Problem]:
     """Return the problems from the start to the first way point, and so on to the target.
 
     via: way points (x, y). Raises ValueError for one that is not free, or equals its neighbour.
@@ -79,7 +81,7 @@ class Run(NamedTuple):
     problem: Problem
     legs: Sequence[Problem]
     bound: shortest_paths.Bound
-    settings: dict[str, Any]
+    settings: Settings
     seed: int
 
 

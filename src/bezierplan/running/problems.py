@@ -25,12 +25,19 @@ from bezierplan.running.simulation import bounds
 from bezierplan.workspaces import files, robot, worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import find_growth, original
+from bezierplan.workspaces.limits import Place
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.worlds import World
 
 # A plan needs no pyarrow, which takes long to import and belongs to the extra `workflow`.
 if TYPE_CHECKING:
     import pyarrow as pa
+
+
+Problems = dict[str, Problem]
+"""By name."""
+Worlds = dict[str, World]
+"""The worlds of those that move, by the problem's name."""
 
 
 def place_problem(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
@@ -53,7 +60,7 @@ def build(name: str, description: dict, workspace: Workspace) -> Problem:
     return Problem(name, workspace, start, target)
 
 
-def _read_end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+def _read_end(end: str, description: dict, workspace: Workspace) -> Place:
     """Return the start or target of a description as (x, y) in units. Raises ValueError if it is
     not free.
     """
@@ -98,9 +105,7 @@ def _read_end(end: str, description: dict, workspace: Workspace) -> tuple[float,
     return point
 
 
-def build_all(
-    descriptions: Descriptions, folder: Path
-) -> tuple[dict[str, Problem], dict[str, World]]:
+def build_all(descriptions: Descriptions, folder: Path) -> tuple[Problems, Worlds]:
     """Build problems, and the worlds of those that move, by the problem's name.
 
     folder: where map files lie. Random parts follow from the names of study and workspace and the
@@ -136,10 +141,10 @@ def _measure_steps(problem: dict, grid: Grid) -> float:
 
 
 def write(
-    problems: dict[str, Problem],
+    problems: Problems,
     workspaces: dict[str, str],
     file: str,
-    moving: dict[str, World] | None = None,
+    moving: Worlds | None = None,
 ) -> None:
     """Write problems, by name, with the names of their workspaces, and their worlds, if there are
     any.
@@ -163,14 +168,14 @@ def write(
     parquet.write_table(pa.Table.from_pylist(rows), file)
 
 
-def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+def read(file: str) -> tuple[Problems, Worlds]:
     """Read the problems of a file, by name, in file order, and the worlds of those that move.
     Problems in one workspace share its object.
     """
-    from bezierplan.running import rows
+    from bezierplan.running import table_files
 
     # The process that reads problems may be forked, which threads forbid.
-    table = rows.read(file, threads=False).to_pylist()
+    table = table_files.read(file, threads=False).to_pylist()
     drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
         row["problem"]: Problem(
@@ -185,11 +190,11 @@ def read(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
     return problems, moving
 
 
-def compute_bounds(problems: dict[str, Problem], moving: dict[str, World]) -> "pa.Table":
+def compute_bounds(problems: Problems, moving: Worlds) -> "pa.Table":
     """Return a table with the straight line and the exact shortest path of each problem; where it
     moves, with a length and a time that no robot can beat, and no octile bound.
     """
-    from bezierplan.running import rows
+    from bezierplan.running import table_files
 
     made = []
     for name, problem in problems.items():
@@ -210,7 +215,7 @@ def compute_bounds(problems: dict[str, Problem], moving: dict[str, World]) -> "p
         if world:
             row |= DriveBound(bounds.bound_arrival(world, problem))._asdict()
         made.append(row)
-    return rows.build_table(made, Bound, *([DriveBound] if moving else []))
+    return table_files.build_table(made, Bound, *([DriveBound] if moving else []))
 
 
 def _compute_cell_bound(problem: Problem) -> float:

@@ -3,7 +3,7 @@ some runs.
 
 Judging calls no planner: a path is read from its row, and judged on the workspace in the file of
 problems, in a process where no planner has run. What no path determines, such as a planner's
-objective, is covered by the digest of each file (`rows`), and by the runs that are repeated
+objective, is covered by the digest of each file (`table_files`), and by the runs that are repeated
 (`run_again`). The motion of repeated drives is checked too.
 """
 
@@ -24,11 +24,11 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import build_region
 from bezierplan.machine.digest import COMPUTING, find_library_version
-from bezierplan.running import answer, execution, problems, rows
+from bezierplan.running import answer, execution, problems, table_files
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.columns import DriveOutcome, Outcome, Planned
+from bezierplan.running.columns import DriveOutcome, Outcome, Planned, Row
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
-from bezierplan.schema.words import escape
+from bezierplan.schema.safe_text import escape
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
@@ -154,12 +154,12 @@ def read_versions() -> dict[str, str]:
     }
 
 
-def _read_problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+def _read_problems(file: str) -> tuple[problems.Problems, problems.Worlds]:
     """Read a file of problems. Raises ValueError if it is not one."""
     try:
         return problems.read(file)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
-        raise rows.describe_misplaced(file, "not a whole file of problems") from None
+        raise table_files.describe_misplaced(file, "not a whole file of problems") from None
 
 
 def judge(task: StoredRuns) -> RunsVerdict:
@@ -173,18 +173,18 @@ def judge(task: StoredRuns) -> RunsVerdict:
     by_method: dict[str, dict[tuple, dict[str, tuple[Any, float]]]] = {}
     for file, chunk in task.runs.items():
         try:
-            table = rows.read(file)
+            table = table_files.read(file)
         except ValueError as error:
             faults.append(describe_error(file, error))
             continue
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-        kept, digest = rows.read_digest(table), rows.compute_digest(table)
+        kept, digest = table_files.read_digest(table), table_files.compute_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         # Rows that were changed are not judged: they could hold anything.
         if kept != digest:
             faults.append(Difference(file, "other rows than were written"))
-        elif fault := rows.find_fault(table.schema, *declared):
-            faults.append(describe_error(file, rows.describe_misplaced(file, fault)))
+        elif fault := table_files.find_fault(table.schema, *declared):
+            faults.append(describe_error(file, table_files.describe_misplaced(file, fault)))
         else:
             stored = table.to_pylist()
             of_file = [*_find_identity_faults(file, stored, chunk)]
@@ -213,9 +213,7 @@ def _list_runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _find_identity_faults(
-    file: str, entries: list[dict[str, Any]], chunk: Chunk
-) -> Iterator[Difference]:
+def _find_identity_faults(file: str, entries: list[Row], chunk: Chunk) -> Iterator[Difference]:
     """Yield the differences between the rows of a file and what is known of them before
     their runs.
     """
@@ -235,7 +233,7 @@ def _find_identity_faults(
 
 def _find_row_faults(
     file: str,
-    row: dict[str, Any],
+    row: Row,
     problem: Problem,
     moving: dict[str, World],
     cache: dict[tuple, dict[str, tuple[Any, float]]],
@@ -279,21 +277,15 @@ def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, 
     if path is None and points:
         raise ValueError("none without a curve")
     answer.check_ends(path, problem)
-    length, check = answer.judge_path(path, build_region(problem.workspace))
+    again = answer.judge_path(path, build_region(problem.workspace))
     # Both the stored and the recomputed distance may be off by the checker's tolerance.
-    slack = 2 * (check.tolerance if path else 0.0) + _SAME
-    return {
-        "length": (length, _SAME),
-        "feasible": (check.feasible, 0.0),
-        "collision_at": (check.collision_at, _SAME_PLACE),
-        "collision_depth": (check.depth, slack),
-        "clearance": (check.clearance, slack),
-        "clearance_error": (check.tolerance, slack),
-    }
+    slack = 2 * (again["clearance_error"] if path else 0.0) + _SAME
+    tolerances = {"length": _SAME, "feasible": 0.0, "collision_at": _SAME_PLACE}
+    return {name: (value, tolerances.get(name, slack)) for name, value in again.items()}
 
 
 def _judge_way(
-    row: dict[str, Any], points: np.ndarray, problem: Problem, world: World
+    row: Row, points: np.ndarray, problem: Problem, world: World
 ) -> dict[str, tuple[Any, float]]:
     """Return what the way of a drive says: column -> value and tolerance."""
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())
@@ -350,8 +342,8 @@ def _run_file_again(of: tuple[str, str, Chunk], digest: str, share: int) -> Runs
     except (PlannerFailure, ValueError) as error:
         return RunsVerdict((Difference(file, f"cannot be made again: {error}"),))
     faults = []
-    for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
-        for name, value in rows.build_table([row], Planned, Outcome).to_pylist()[0].items():
+    for row, stored in zip(remade, table_files.read(file).take(numbers).to_pylist()):
+        for name, value in table_files.build_table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number has all its bits; and a NaN, unlike itself as a number, has equal
             # text.
             if repr(value) != repr(stored.get(name)):

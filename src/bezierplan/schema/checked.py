@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from bezierplan.schema.words import escape
+from bezierplan.schema.safe_text import escape
 
 
 class Fault(ValueError):

@@ -31,7 +31,7 @@ from bezierplan.running.execution import resolve_settings
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known, read_text
 from bezierplan.schema.model import Model, convert_to_list, find_names, identify, parse
-from bezierplan.schema.words import describe_in_one_line
+from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.study import published
 from bezierplan.study.alternatives import apply_values, is_judged
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry

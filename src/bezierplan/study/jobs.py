@@ -258,7 +258,6 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     problems = build_descriptions(study, {name: every[name] for name in spec.problems})
     homes += problems.workspaces
     return FigureFiles(
-        study=study.key,
         caption=build_caption(study, figure, scale).write(),
         columns=spec.columns,
         width=spec.width,

@@ -20,7 +20,7 @@ from bezierplan.places import PACKAGE, STUDIES, TREE, find_cache_folder, shorten
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_all, suggest_closest
 from bezierplan.schema.model import Model, find_names, parse, parse_sound_part
-from bezierplan.schema.words import describe_in_one_line
+from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study

@@ -4,6 +4,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+Place = tuple[float, float]
+"""x and y, in units."""
+
 Bounds = tuple[float, float, float, float]
 """Lowest and highest x, lowest and highest y, in units."""
 

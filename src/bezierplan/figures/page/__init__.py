@@ -1,5 +1,5 @@
-"""One file that shows all results of a scale. `reader` and `runs` read them, `answer` and `charts`
-prepare words and drawings, and `build` fills templates.
+"""One file that shows all results of a scale. `reader` and `runs` read them, `overview` and
+`charts` prepare words and drawings, and `build` fills templates.
 """
 
 import re

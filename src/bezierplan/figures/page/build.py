@@ -10,7 +10,7 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
@@ -20,8 +20,9 @@ from bezierplan.analysis.claims.sentences import describe_metric
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.proof import describe_version
-from bezierplan.figures.page import HERE, addresses, answer, charts, reader, runs
-from bezierplan.figures.page.page_job import PageJob
+from bezierplan.figures.page import HERE, addresses, charts, overview, reader, runs
+from bezierplan.figures.page.page_job import Labels, PageJob
+from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
 
 # Mark of a comparison -> the class that colours it, and what it says.
@@ -38,22 +39,23 @@ _AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)",
 def gather_content(
     job: PageJob,
     folder: Path,
-    summary: list[str] | None = None,
+    summary: list[str],
     proof: str | None = None,
     evidence: reader.Evidence | None = None,
-    results: Mapping[str, Files] = MappingProxyType({}),
+    results: Mapping[str, Files] | None = None,
 ) -> SimpleNamespace:
     """Return the content of the templates, with `data` for the viewer's script.
 
     folder: the scale's results. summary: the files numbers.csv, claims.csv and methods.csv of all
-    studies, if the scale has them. proof: the file of the check of the runs shown
-    (`running.recheck`), if there is one. evidence: see `reader.read_study_results`. results: by
-    study/experiment, the files of the experiments whose runs the viewer shows.
+    studies, none if the scale has none. proof: the file of the check of the runs shown
+    (`running.recheck`), if there is one; it lists all other files behind the page. evidence: see
+    `reader.read_study_results`. results: by study/experiment, the files of the experiments whose
+    runs the viewer shows.
     """
-    tables = [reader.read(file) for file in summary] if summary else None
+    tables = [reader.read(file) for file in summary]
     studies = reader.read_study_results(job, folder, tables, evidence)
     data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
-    for place, files in results.items():
+    for place, files in (results or {}).items():
         key, _, name = place.partition("/")
         shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
         studies[key].shown += shown
@@ -61,10 +63,13 @@ def gather_content(
             data[kind] |= own
     _merge_workspaces(data)
     repeats = [own.repeats for own in job.studies.values()]
-    verified = _read_check(Path(proof)) if proof else None
+    verified = None
+    if proof:
+        content = Path(proof).read_bytes()
+        verified = json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
     return SimpleNamespace(
         scale=job.scale,
-        about_scale=answer.describe_scale(job.scale, repeats, bool(evidence)),
+        about_scale=overview.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else describe_version(),
         headline=_write_headline(job, tables, evidence),
         verified=verified,
@@ -78,14 +83,6 @@ def gather_content(
             }
         },
     )
-
-
-def _read_check(file: Path) -> dict[str, Any]:
-    """Read the file of the check, and add the SHA-256 of that file, which lists all other files
-    behind the page.
-    """
-    content = file.read_bytes()
-    return json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
 
 
 def _merge_workspaces(data: dict[str, dict]) -> None:
@@ -102,7 +99,7 @@ def _merge_workspaces(data: dict[str, dict]) -> None:
 
 
 def _write_headline(
-    job: PageJob, tables: list[pd.DataFrame] | None, evidence: reader.Evidence | None
+    job: PageJob, tables: list[pd.DataFrame], evidence: reader.Evidence | None
 ) -> list[str]:
     """Return the sentences on numbers and claims of the page's studies, if there are any.
 
@@ -120,12 +117,12 @@ def _write_headline(
     return [*filter(None, said)]
 
 
-def render_page(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
-    """Return the page, or what another template shows, as html that needs no other file.
+def render_page(page: SimpleNamespace, folder: Path) -> str:
+    """Return the page as html that needs no other file.
 
     folder: where the pictures of its figures are.
     """
-    text = build_environment(page, folder).get_template(template).render(page=page)
+    text = build_environment(page, folder).get_template("page.html.jinja").render(page=page)
     return "".join(
         part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
         for part in _AS_WRITTEN.split(text)
@@ -158,12 +155,12 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "positions": describe_positions,
         "range_text": comparison.format_range,
         "packed": pack,
-        "failing": answer.select_failing,
+        "failing": overview.select_failing,
         "labelled": label_keys,
     }
     environment.globals |= {
         "address": addresses.build_address,
-        "answer": answer,
+        "overview": overview,
         "baseline": methods.BASELINE,
         "charts": charts,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
@@ -201,7 +198,7 @@ def format_value(value: Any, digits: int = 4) -> str:
     return naming.format_number(value, digits) if isinstance(value, float) else str(value)
 
 
-def label_keys(text: Any, labels: dict[str, str]) -> str:
+def label_keys(text: Any, labels: Labels) -> str:
     """Return text with the keys of methods and metrics replaced by their printed names.
 
     >>> label_keys("the method mga_c of a_study", {"mga_c": "MGA-C"})
@@ -210,14 +207,14 @@ def label_keys(text: Any, labels: dict[str, str]) -> str:
     return re.sub(r"\w+_\w+", lambda found: labels.get(found[0], found[0]), str(text))
 
 
-def count_verdicts(rows: Iterable[reader.Row]) -> list[tuple[str, int]]:
+def count_verdicts(rows: Iterable[Row]) -> list[tuple[str, int]]:
     """Count the rows of each verdict, in the order of `words.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
     names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 
-def describe_positions(cells: Iterable[reader.Row]) -> str:
+def describe_positions(cells: Iterable[Row]) -> str:
     """Say how many numbers of a table lie inside our range.
 
     If all numbers share the reason for which this proves nothing, the text ends with it.
@@ -229,9 +226,9 @@ def describe_positions(cells: Iterable[reader.Row]) -> str:
     inside = sum(cell["position"] == "inside" for cell in told)
     text = f"{inside} of {len(told)} printed numbers inside our range"
     if len(told) < len(placed):
-        wide = f"of {len(placed)} printed numbers our range is too wide to tell for "
-        wide += f"{len(placed) - len(told)}"
-        text = f"{text}; {wide}" if told else wide[0].upper() + wide[1:]
+        unknown = len(placed) - len(told)
+        wide = f"of {len(placed)} printed numbers our range is too wide to tell for {unknown}"
+        text = f"{text}; {wide}" if told else wide.capitalize()
     reasons = {cell["reason"] for cell in placed}
     # Different reasons stand beside their numbers.
     if len(reasons) == 1 and (reason := reasons.pop()):
@@ -239,7 +236,7 @@ def describe_positions(cells: Iterable[reader.Row]) -> str:
     return text
 
 
-def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
+def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
     """Lay the numbers of a table out in rows and columns.
 
     A row is a combination of keys, those of the default reading first; a column is a metric with a
@@ -251,7 +248,7 @@ def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
     values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
     named = [key for key in values if len(values[key]) > 1]
     columns = list(dict.fromkeys(cell["column"] for cell in numbers))
-    rows: dict[tuple, dict[str, reader.Row]] = {}
+    rows: dict[tuple, dict[str, Row]] = {}
     for cell in numbers:
         rows.setdefault(tuple(cell["keys"].values()), {})[cell["column"]] = cell
     study = table["address"].partition("/")[0]
@@ -260,7 +257,10 @@ def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
         keys = next(iter(cells.values()))["keys"]
         words = [
             (
-                _format_key(key, keys[key], labels),
+                # The column names the key, so a number stands alone.
+                format_value(keys[key])
+                if isinstance(keys[key], int | float)
+                else reader.format_key(key, keys[key], labels),
                 addresses.build_address(study, "method", keys[key]),
             )
             for key in named
@@ -284,12 +284,6 @@ def build_grid(table: reader.Row, labels: dict[str, str]) -> SimpleNamespace:
             for column in columns
         ],
     )
-
-
-def _format_key(key: str, value: Any, labels: dict[str, str]) -> str:
-    """Return a key for a column that names it, so that a number stands alone."""
-    plain = isinstance(value, int | float)
-    return format_value(value) if plain else reader.format_key(key, value, labels)
 
 
 def _count_decimals(value: float | None) -> int:

@@ -4,8 +4,7 @@ from itertools import groupby
 from typing import Any
 
 from bezierplan.analysis.numbers.comparison import NO_RANGE
-
-Row = dict[str, Any]
+from bezierplan.running.columns import Row
 
 
 def add_bars(cells: list[Row]) -> None:

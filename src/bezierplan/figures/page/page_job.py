@@ -8,6 +8,9 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures.caption import Caption
 
+Labels = dict[str, str]
+"""Name -> printed name."""
+
 
 class MethodView(NamedTuple):
     """A method of a study, for its list on the page."""
@@ -42,7 +45,7 @@ class StudyView(NamedTuple):
     title: str
     paper: Any
     """Title, where it appeared, and DOI, as far as known; None for a reader's own study."""
-    labels: dict[str, str]
+    labels: Labels
     """Name -> printed name."""
     methods: dict[str, MethodView]
     claims: dict[str, Claim]

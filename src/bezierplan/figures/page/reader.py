@@ -16,10 +16,9 @@ from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
+from bezierplan.figures.page.page_job import FILES, ArtefactView, Labels, PageJob, StudyView
+from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
-
-Row = dict[str, Any]
 
 
 def read(file: str | Path) -> pd.DataFrame:
@@ -34,11 +33,6 @@ def list_rows(table: pd.DataFrame) -> list[Row]:
     # Only columns of objects can hold None.
     table = table.replace([np.inf, -np.inf], np.nan).astype(object)
     return table.where(table.notna(), None).to_dict("records")
-
-
-def select_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
-    """Return the rows of a study, or an empty table if there is no table."""
-    return pd.DataFrame() if table is None else table[table["study"] == study]
 
 
 class Evidence(NamedTuple):
@@ -62,7 +56,7 @@ class Evidence(NamedTuple):
 def read_study_results(
     job: PageJob,
     folder: Path,
-    summary: list[pd.DataFrame] | None,
+    summary: list[pd.DataFrame],
     evidence: Evidence | None = None,
 ) -> dict[str, SimpleNamespace]:
     """Read the results of all studies from the folder of a scale.
@@ -70,20 +64,21 @@ def read_study_results(
     summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
     stands in place of the scale's own positions and verdicts.
     """
-    numbers, _, measured = summary or [None] * 3
+    numbers, _, measured = summary or [pd.DataFrame(columns=["study"])] * 3
     pages = {}
     for key, view in job.studies.items():
-        files = {name: read(folder / key / FILES[name]) for name in view.files}
+        files = dict.fromkeys(FILES, pd.DataFrame())
+        files |= {name: read(folder / key / FILES[name]) for name in view.files}
         substitute = evidence.select([key]) if evidence and key in job.outcome else None
         if substitute:
             files |= {"claims": substitute.claims, "checks": substitute.checks}
         claims = _list_claims(key, view, files)
-        counted = select_study(numbers, key)
+        counted = numbers[numbers["study"] == key]
         own_tables = [
             _describe_table(key, name, each, folder, view.labels, counted, substitute)
             for name, each in view.tables.items()
         ]
-        of_problems = substitute.methods if substitute else select_study(measured, key)
+        of_problems = substitute.methods if substitute else measured[measured["study"] == key]
         pages[key] = SimpleNamespace(
             key=key,
             job=view,
@@ -94,14 +89,14 @@ def read_study_results(
             ],
             methods=[_describe_method(key, name, each) for name, each in view.methods.items()],
             assumptions=[_describe_assumption(key, each, view.labels) for each in view.assumptions],
-            audit=list_rows(files.get("audit", pd.DataFrame())),
+            audit=list_rows(files["audit"]),
             families=_describe_families(of_problems, view.labels),
             shown=[],
         )
     return pages
 
 
-def _describe_families(of_problems: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame | None:
+def _describe_families(of_problems: pd.DataFrame, labels: Labels) -> pd.DataFrame | None:
     """Return the methods of a study on each family of its problems, as words; None if there are
     none.
     """
@@ -147,7 +142,7 @@ def _describe_table(
     name: str,
     artefact: ArtefactView,
     folder: Path,
-    labels: dict[str, str],
+    labels: Labels,
     counted: pd.DataFrame,
     evidence: Evidence | None,
 ) -> Row:
@@ -171,7 +166,7 @@ def _describe_table(
     }
 
 
-def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: dict[str, str]) -> str:
+def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
     """Say how columns of printed means differ from ours, in order or level."""
     told = []
     for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
@@ -212,14 +207,14 @@ def _list_numbers(
     spec: Pivot,
     counted: pd.DataFrame,
     many: pd.DataFrame,
-    labels: dict[str, str],
+    labels: Labels,
 ) -> list[Row]:
     """Return the cells of a table that have a published number, and other methods' cells in the
     same columns.
 
     many: rows of the evidence, which replace the table's own values. Added keys: keys, row, column
-    (printed names), address, beside (ours for the paper's number of runs), apart (relative to the
-    published number), bar (`charts.add_bars`).
+    (printed names), address, beside (ours for the paper's number of runs), bar
+    (`charts.add_bars`).
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -240,35 +235,26 @@ def _list_numbers(
         # The evidence has the same columns, of many runs.
         if row := by_place.get(build_address(*position.values())):
             cell |= {name: value for name, value in row.items() if name in cell}
+        scaled = cell["value_ours_scaled"]
         cell |= {
             "keys": {key: position[key] for key in keys},
             "row": ", ".join(format_key(key, position[key], labels) for key in keys),
             "column": _format_heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
-            **_compute_distance(cell),
+            "beside": cell["value_ours"] if scaled is None else scaled,
         }
     charts.add_bars(cells)
     return cells
 
 
-def _compute_distance(cell: Row) -> Row:
-    """Return beside and apart of a number (`_list_numbers`)."""
-    scaled, number = cell["value_ours_scaled"], cell["value_published"]
-    beside = cell["value_ours"] if scaled is None else scaled
-    return {
-        "beside": beside,
-        "apart": beside / number - 1 if number and beside is not None else None,
-    }
-
-
-def format_key(column: str, value: Any, labels: dict[str, str]) -> str:
+def format_key(column: str, value: Any, labels: Labels) -> str:
     """Return the value of a key column as printed; a number stands with its name."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value)
     return naming.format_value(value, column, labels)
 
 
-def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
+def _format_heading(metric: str, statistic: str, spec: Pivot, labels: Labels) -> str:
     """Return metric and statistic as the table prints them.
 
     An unstated statistic stands beside our median.
@@ -282,10 +268,8 @@ def _format_heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, 
 
 def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Return claims in their primary variant, each with its other variants (`others`)."""
-    if "claims" not in files:
-        return []
     compared: dict[tuple, list[Row]] = {}
-    for row in list_rows(files.get("checks", pd.DataFrame())):
+    for row in list_rows(files["checks"]):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
     names = sentences.name_variants([*content.claims.values()], content.labels)
     claims: dict[str, Row] = {}
@@ -304,40 +288,30 @@ def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame])
 def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
     """Return a claim with its comparisons.
 
-    Added keys: address, rule (the meaning of its count), why, comparisons, shown_in.
+    Added keys: address, rule (the meaning of its count), why (a sentence on the decisive
+    comparison), comparisons, shown_in.
     """
-    described = content.claims.get(claim["id"])
-    checks = described.checks if described else []
+    described, why = content.claims.get(claim["id"]), ""
+    # What docs/outcome keeps may be of a check that the study does not have any more.
+    checks = dict(enumerate(described.checks if described else (), 1))
     for row in comparisons:
-        check = checks[row["check"] - 1] if row["check"] <= len(checks) else None
+        check = checks.get(row["check"])
         row["reference"] = sentences.find_threshold(check) if check else 0.0
         row["name"] = sentences.name_comparison(row, check, content.labels)
+        if row["decisive"] and check:
+            own = bool(claim["own_criterion"])
+            why = why or sentences.explain_verdict(row, check, content.labels, own)
     there = content.tables.keys() | content.figures.keys()
     return claim | {
         "address": build_address(study, claim["id"]),
         "rule": sentences.describe_count(described, claim["verdict"], claim["holds"]),
-        "why": _explain_verdict(claim, comparisons, checks, content.labels),
+        "why": why,
         "comparisons": comparisons,
         "shown_in": [name for name in (claim["artefact"] or "").split(", ") if name in there],
     }
 
 
-def _explain_verdict(
-    claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]
-) -> str:
-    """Return the sentence on the decisive comparison, which says why.
-
-    It is empty if there is none, or if the study does not have the check any more.
-    """
-    row = next((each for each in comparisons if each["decisive"]), None)
-    if row is None or row["check"] > len(checks):
-        return ""
-    return sentences.explain_verdict(
-        row, checks[row["check"] - 1], labels, bool(claim["own_criterion"])
-    )
-
-
-def _describe_assumption(study: str, row: Row, labels: dict[str, str]) -> Row:
+def _describe_assumption(study: str, row: Row, labels: Labels) -> Row:
     """Return a detail that the paper leaves open.
 
     default: one for all, or each with the names that have it.

@@ -8,16 +8,18 @@ problems compare.
 import json
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
 from bezierplan.analysis import results
 from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
+from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
 from bezierplan.workspaces import files, worlds
 from bezierplan.workspaces.limits import Bounds
@@ -38,9 +40,6 @@ _DRAWN = [
 ]
 
 
-Row = dict[str, Any]
-
-
 def choose_runs(
     study: str, experiment: str, content: ExperimentView, inputs: Files
 ) -> tuple[list[Row], Row]:
@@ -51,10 +50,8 @@ def choose_runs(
     """
     bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
-    tables = {file: parquet.read_table(file, columns=columns) for file in inputs.chunks}
-    ranking = pd.concat(
-        [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
-    )
+    table = pa.concat_tables(parquet.read_table(file, columns=columns) for file in inputs.chunks)
+    ranking = table.select(_RANKED).to_pandas()
     ranking = ranking[
         (ranking["repeat"] < content.repeats) & ranking["method"].isin(content.methods)
     ]
@@ -70,18 +67,14 @@ def choose_runs(
             for method in content.methods
             if method in by_method
         ]
-    # Histories and points are taken from the tables for these runs alone.
-    ids = {
+    # Histories and points are taken from the table for these runs alone.
+    ids = [
         name
         for each in choice
         for name in (each["best"], each["median"], each["worst"], *each["failed"])
         if name
-    }
-    kept = [
-        tables[file].take(rows.index.to_list()).to_pandas()
-        for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
-    rows = pd.concat(kept) if kept else ranking
+    rows = table.filter(compute.is_in(table["id"], pa.array(ids, pa.string()))).to_pandas()
     made, moving = problem_files.read(inputs.problems)
     by_name = {row["id"]: row for row in rows.to_dict("records")}
     traces = _read_traces(inputs.chunks if content.moves else [], list(by_name))
@@ -141,13 +134,13 @@ def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.
     }
 
 
-def _list_shapes(problem: Problem) -> dict[str, Any]:
+def _list_shapes(problem: Problem) -> Row:
     """Return the workspace of a problem as plain values with its bounds."""
     shapes = _round_json(files.write_json(problem.workspace))
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
-def _round_json(text: str) -> dict[str, Any]:
+def _round_json(text: str) -> Row:
     """Return the content of JSON with numbers of seven digits."""
     return json.loads(text, parse_float=lambda number: float(f"{float(number):.7g}"))
 

@@ -83,15 +83,14 @@ class Sources:
 
     results: by experiment. workspaces, problems: by name, if they are drawn without runs.
     functions: by name, from the study's module. published: all published tables by file name.
-    study: its name, a part of the seeds of runs that panels plan. alternatives: each alternative
-    (assumption, detail, value) with the comparisons of claims under it.
+    alternatives: each alternative (assumption, detail, value) with the comparisons of claims under
+    it.
     """
 
     results: Mapping[str, Results] = field(default_factory=dict)
     workspaces: Mapping[str, Any] = field(default_factory=dict)
     functions: Mapping[str, Callable[..., pd.DataFrame]] = field(default_factory=dict)
     published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
-    study: str = ""
     problems: Mapping[str, Problem] = field(default_factory=dict)
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
     _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
@@ -117,14 +116,12 @@ class Panel(Model, ABC):
     """Keys common to all kinds of panel, and the needs of a kind beside its panels.
 
     rerun: tells if runs are repeated to draw values that no table keeps. one: columns in which the
-    runs shown have one value. drives: tells if these are drives. tracks: tells if their planner
-    must have `track`.
+    runs shown have one value. drives: tells if these are drives.
     """
 
     rerun: ClassVar[bool] = False
     one: ClassVar[tuple[str, ...]] = ()
     drives: ClassVar[bool] = False
-    tracks: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Line = Field(

@@ -81,7 +81,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     x, hue, labels = options.x, options.hue, scene.labels
     places = style.list_in_order(frame[x], options.where)
     names = [labels.get(at, at) if isinstance(at, str) else f"{at:g}" for at in places]
-    groups = style.list_groups(frame, hue, options.where, scene)
+    groups = style.list_groups(frame, hue, options, scene)
     width = _WIDTH / len(groups)
     for number, (_, rows, look) in enumerate(groups):
         at = rows[x].map(places.index) + width * (number + 0.5) - _WIDTH / 2

@@ -25,6 +25,7 @@ from bezierplan.figures.groups import (
     show_metric,
 )
 from bezierplan.figures.panels import MetricPanel, Note
+from bezierplan.running.columns import Row
 from bezierplan.schema.model import Column, Number
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     """
     import pandas as pd
 
-    def list_rows(group: Results) -> Iterable[dict[str, Any]]:
+    def list_rows(group: Results) -> Iterable[Row]:
         parts = _compute_box(list_values(group)) or [("none", np.nan)]
         for part, statistic in (
             ("published", "mean"),

@@ -61,7 +61,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw a line for each method; a hollow mark ends a drive that does not arrive."""
-    for _, own, look in style.list_groups(frame, "method", options.where, scene):
+    for _, own, look in style.list_groups(frame, "method", options, scene):
         bare = look | {"marker": "", "linewidth": 1.0, "label": None}
         axes.plot(own["step"], own["clearance"], **bare)
         end, arrived = own[-1:], bool(own["arrived"].iloc[-1])

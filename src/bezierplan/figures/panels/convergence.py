@@ -24,6 +24,7 @@ from bezierplan.figures.groups import (
 )
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
 from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
+from bezierplan.running.columns import Row
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
 from bezierplan.workspaces.seeds import generator
 
@@ -134,9 +135,7 @@ def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.Dat
     return pd.DataFrame(names | drawn)
 
 
-def _build_rows_of_group(
-    group: Results, options: Options, generations: int
-) -> Iterable[dict[str, Any]]:
+def _build_rows_of_group(group: Results, options: Options, generations: int) -> Iterable[Row]:
     """Yield each generation of a group with the interval of its statistic.
 
     All generations use the same draws of runs, so that the ends of the interval are smooth lines.
@@ -202,15 +201,17 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw a line for each group, with as many intervals as stay legible."""
-    groups = style.list_groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options, scene)
     for number, (_, rows, look) in enumerate(groups):
         step = max(1, len(rows) // _MARKS)
         first = number * step // len(groups)
         generation = rows["generation"]
         axes.plot(generation, rows["objective"], markevery=(first, step), **look)
         if len(groups) <= _MOST_BANDS:
-            band = style.interval_band(look["color"])
-            axes.fill_between(generation, rows["low95"], rows["high95"], zorder=1.5, **band)
+            # Pale, with an edge that stays visible where bands overlap.
+            band = {"facecolor": (look["color"], 0.12), "edgecolor": (look["color"], 0.5)}
+            ends = rows["low95"], rows["high95"]
+            axes.fill_between(generation, *ends, zorder=1.5, linewidth=0.4, **band)
         elif len(groups) <= _MOST_ENDS:
             last = rows.iloc[-1]
             # Side by side, so that all can be seen.

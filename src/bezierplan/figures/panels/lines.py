@@ -113,16 +113,21 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw a line for each value of hue, with intervals and published means if it is of runs."""
-    hue, x = options.hue, options.x
+    hue, x, of_table = options.hue, options.x, options.experiment is None
     if hue is None:
         # The look of the method of all runs.
         methods = frame["method"].dropna().unique() if "method" in frame else []
         groups = [(None, frame, style.choose_line_styles(list(methods) or [""], scene.looks)[0])]
     else:
-        groups = style.list_groups(frame, hue, options.where, scene)
+        groups = style.list_groups(frame, hue, options, scene)
     for _, rows, look in groups:
-        if options.experiment is None:
-            axes.plot(rows[x], rows["value"], **_choose_style(look, len(rows)))
+        if of_table:
+            # The more points, the fewer marks.
+            if len(rows) > _MOST_JOINED:
+                look |= {"linestyle": "", "marker": ".", "markersize": 1.2}
+            elif len(rows) > _FEW:
+                look |= {"marker": ""}
+            axes.plot(rows[x], rows["value"], **look)
             continue
         parts = dict(iter(rows.groupby("part")))
         _draw_statistic(axes, parts["statistic"], x, look)
@@ -136,11 +141,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(describe_axis(x, scene))
-    single = options.experiment is None or frame["n"].max() < 2
-    statistic = "" if single else options.statistic
+    statistic = "" if of_table or frame["n"].max() < 2 else options.statistic
     axes.grid(visible=True)
     show_metric(axes, options.metric, scene, statistic, options.scale)
-    if options.experiment is None:
+    if of_table:
         return Note()
     ours = frame[frame["part"] == "statistic"]
     ends = [
@@ -164,10 +168,3 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None
         hollow = look | {"linestyle": "", "markerfacecolor": style.FREE, "label": None}
         axes.plot(partial[x], partial["value"], zorder=3.1, **hollow)
         axes.plot([], [], label=style.HOLLOW_LABEL, **style.HOLLOW)
-
-
-def _choose_style(look: dict, points: int) -> dict:
-    """Choose the style of a line of a table: the more points, the fewer marks."""
-    if points > _MOST_JOINED:
-        return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
-    return look if points <= _FEW else look | {"marker": ""}

@@ -43,7 +43,5 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Let the study's function draw, and put the text that it may return into the notes."""
-    looks = {
-        name: look for name, _, look in style.list_groups(frame, "method", options.where, scene)
-    }
+    looks = {name: look for name, _, look in style.list_groups(frame, "method", options, scene)}
     return Note("", scene.functions[options.function](axes, frame, looks) or "")

@@ -18,6 +18,7 @@ from bezierplan.figures.groups import count_runs, describe_axis, find_published
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
+from bezierplan.running.columns import Row
 from bezierplan.schema.model import (
     Column,
     Experiment,
@@ -30,7 +31,7 @@ from bezierplan.schema.model import (
     build_error,
 )
 from bezierplan.workspaces.kinds import of_length
-from bezierplan.workspaces.problem import Path, Workspace
+from bezierplan.workspaces.problem import Path
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -79,7 +80,7 @@ _CHANGED = {
 }
 
 
-def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
+def choose_run(results: Results, pick: Pick) -> tuple[pd.Series | None, Row]:
     """Choose the run that a panel shows, and describe it in the columns of the panel's csv file.
 
     Returns None in place of a run if there is none to choose. Columns: problem, method, runs and
@@ -287,7 +288,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         home = options.find_workspace(frame, scene)
         unit = home.unit
         workspaces.draw_workspace(axes, home)
-        _draw_changes(axes, frame, home)
+        for part, look in _CHANGED.items():
+            cells = frame[frame["part"] == part].assign(size=getattr(home, "cell", None))
+            look = look | {"facecolor": "none", "linewidth": 0.9, "zorder": 1}
+            workspaces.draw_cells(axes, cells, look)
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
@@ -300,21 +304,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     return note
 
 
-def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
-    """Draw the cells that differ from those of another problem."""
-    for part, look in _CHANGED.items():
-        cells = frame[frame["part"] == part]
-        if len(cells):
-            look = look | {"facecolor": "none", "linewidth": 0.9, "zorder": 1}
-            workspaces.draw_cells(axes, cells.assign(size=workspace.cell), look)
-
-
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the paths of all values of hue, each in its own style, and their problem once.
 
     Returns a note with their measures.
     """
-    groups = style.list_groups(frame, options.hue, options.where, scene)
+    groups = style.list_groups(frame, options.hue, options, scene)
     clauses = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(groups))

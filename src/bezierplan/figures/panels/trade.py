@@ -20,6 +20,7 @@ from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.figures import style
 from bezierplan.figures.groups import count_runs, describe_axis
 from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.running.columns import Row
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     # Against CPU time the baseline is a point like the others.
     problems = {name: results.problems[name] for name in bounds.index} if of_bend else {}
     lines = _compute_lines(problems, bounds)
-    rows: list[dict[str, Any]] = [
+    rows: list[Row] = [
         {"part": "line", "radius": radius}
         | _compute_medians(own[["x", "y"]].to_numpy(), f"{radius}")
         for radius, own in lines.groupby("radius")
@@ -209,13 +210,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the line and a mark with intervals for each method."""
     of_bend = options.x == "bend"
     placed, sides, edges = _place_at_edges(frame)
-    groups = style.list_groups(placed[placed["part"] == "method"], "method", options.where, scene)
+    groups = style.list_groups(placed[placed["part"] == "method"], "method", options, scene)
     line = placed[placed["part"] == "line"].sort_values("radius") if of_bend else placed[:0]
     _scale_axes(axes, placed, sides, edges, of_bend)
     if len(line):
-        colour, dashes, _ = style.LOOKS[style.LOOK_OF_PLANNER[_BASELINE]]
-        look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
-        axes.plot(line["x"], line["y"], label="rounded shortest path, any turning radius", **look)
+        (look,) = style.choose_line_styles([_BASELINE], style.LOOK_OF_PLANNER)
+        look |= {"marker": "", "label": "rounded shortest path, any turning radius"}
+        axes.plot(line["x"], line["y"], **look)
     for _, rows, look in groups:
         _draw_method(axes, rows.iloc[0], look | {"linestyle": "none"})
     bend = f"tightest bend (1/{scene.unit})"

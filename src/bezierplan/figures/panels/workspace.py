@@ -292,14 +292,14 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
 
     The legend names every height, or only the lowest and the highest if there are many.
     """
+    import matplotlib as mpl
+
     low, high = cells["height"].min(), cells["height"].max()
     named = (low, high) if cells["height"].nunique() > _MOST_HEIGHTS else cells["height"].unique()
     for height, own in cells.groupby("height"):
-        look = {
-            "facecolor": style.choose_ground_colour(
-                (height - low) / (high - low) if high > low else 0.0
-            )
-        }
+        share = (height - low) / (high - low) if high > low else 0.0
+        # Pale, so that lines stand out.
+        look = {"facecolor": mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))}
         draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
 
 

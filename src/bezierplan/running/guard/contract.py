@@ -7,9 +7,10 @@ count, not its actual work.
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import cycle
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +18,9 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan, is_file, list_planners
 from bezierplan.running import answer
+from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.guard import interface, plain, process, worker
+from bezierplan.running.guard import interface, plain_values, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, suggest_closest
 from bezierplan.workspaces.circles import Circles
@@ -69,7 +71,7 @@ class ContractFinding(NamedTuple):
         return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
-def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[ContractFinding]:
+def check_planner(planner: str, settings: Settings) -> Iterator[ContractFinding]:
     """Test a planner, given as a name or the path of a file, with these settings; yield a finding
     for each fact and problem.
 
@@ -123,9 +125,7 @@ def build_drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem
 # Facts
 
 
-def _find_faults(
-    planner: str, module: ModuleType, settings: dict[str, Any]
-) -> Iterator[ContractFinding]:
+def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterator[ContractFinding]:
     """Yield the findings of `check_planner`."""
     by_name = {problem.name: problem for problem in list_problems(module)}
     keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
@@ -142,14 +142,19 @@ def _find_faults(
         plans = plans_of[name] = [each.result for each in made]
         draws |= any(each.drew for each in made)
         first = next(iter(plans_of.values()))[0]
-        for fact, detail, fault in (
-            ("plan", *_is_valid(plans, problem, names, first, is_file(planner))),
-            ("history", "", _check_history(plans, keeps_best)),
-            ("budget", *_check_budget(plans, budget)),
-            ("claims", *_check_claims(plans, problem, exact)),
-            ("random numbers", "", _compare_repeats(plans[0], plans[1])),
-        ):
-            yield ContractFinding(name, fact, not fault, fault or detail)
+        facts = {
+            "plan": partial(_check_plans, plans, problem, names, first, is_file(planner)),
+            "history": partial(_check_history, plans, keeps_best),
+            "budget": partial(_check_budget, plans, budget),
+            "claims": partial(_check_claims, plans, problem, exact),
+        }
+        for fact, check in facts.items():
+            try:
+                yield ContractFinding(name, fact, True, check())
+            except answer.Unfit as fault:
+                yield ContractFinding(name, fact, False, str(fault))
+        differs = _compare_repeats(plans[0], plans[1])
+        yield ContractFinding(name, "random numbers", not differs, differs)
     if not plans_of:
         return
     # A planner of this package runs in this process alone.
@@ -170,7 +175,7 @@ def _find_faults(
 
 def run_planner(
     planner: str,
-    settings: dict[str, Any],
+    settings: Settings,
     by_name: dict[str, Problem],
     seeds: Sequence[int],
     hashing: int = 0,
@@ -195,47 +200,43 @@ def run_planner(
     return by_problem
 
 
-def _is_valid(
+# The checks of a fact return a detail on plans, and raise Unfit for the first fault.
+
+
+def _check_plans(
     plans: list[Plan], problem: Problem, names: set[str], first: Plan, finite: bool
-) -> tuple[str, str]:
-    """Return a detail on plans, and the first fault that makes one unfit for the runs table."""
+) -> str:
+    """Check that plans fit into the runs table; return how many have a path."""
     for plan in plans:
-        try:
-            answer.accept_answer(plan, problem, names)
-            answer.check_columns(plan, first, finite)
-        except answer.Unfit as fault:
-            return "", str(fault)
-    return f"{sum(plan.path is not None for plan in plans)} paths of {len(plans)} plans", ""
+        answer.accept_answer(plan, problem, names)
+        answer.check_columns(plan, first, finite)
+    return f"{sum(plan.path is not None for plan in plans)} paths of {len(plans)} plans"
 
 
 def _check_history(plans: list[Plan], keeps_best: bool) -> str:
-    """Return what is wrong with the histories of plans; empty if nothing is."""
-    try:
-        for plan in plans:
-            answer.check_history(plan, keeps_best)
-    except answer.Unfit as fault:
-        return str(fault)
+    """Check the histories of plans, on which there is no detail."""
+    for plan in plans:
+        answer.check_history(plan, keeps_best)
     return ""
 
 
-def _check_budget(plans: list[Plan], budget: float) -> tuple[str, str]:
-    """Return the numbers of evaluations, and a fault if one is above the budget. They may differ
-    from seed to seed: a search may end early.
+def _check_budget(plans: list[Plan], budget: float) -> str:
+    """Check the numbers of evaluations, and return them. They may differ from seed to seed: a
+    search may end early.
     """
     used = sorted({plan.evaluations for plan in plans})
     if used[-1] > budget:
-        return "", f"{used[-1]} evaluations; expected at most {budget}"
+        raise answer.Unfit(f"{used[-1]} evaluations; expected at most {budget}")
     for plan in plans:
-        if len(plan.history) > plan.evaluations:
-            return "", (
-                f"a history of {len(plan.history)} values from {plan.evaluations} evaluations"
-            )
-    return " to ".join(map(str, dict.fromkeys((used[0], used[-1])))) + " evaluations", ""
+        length = len(plan.history)
+        if length > plan.evaluations:
+            raise answer.Unfit(f"a history of {length} values from {plan.evaluations} evaluations")
+    return " to ".join(map(str, dict.fromkeys((used[0], used[-1])))) + " evaluations"
 
 
-def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]:
-    """Return how many claims the checker confirms, and a fault if a planner that declares itself
-    exact claims too much, or a path leads to a sealed target.
+def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> str:
+    """Return how many claims the checker confirms. A planner that declares itself exact claims no
+    more, and no path leads to a sealed target.
     """
     blocked = build_region(problem.workspace)
     feasible = [
@@ -245,15 +246,17 @@ def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str
     claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]
     detail = f"{len(claims)} paths claimed feasible, {sum(claims)} by the checker"
     if problem.name.endswith(SEALED) and any(feasible):
-        return detail, "a feasible path to a sealed target"
-    return detail, detail if exact and not all(claims) else ""
+        raise answer.Unfit("a feasible path to a sealed target")
+    if exact and not all(claims):
+        raise answer.Unfit(detail)
+    return detail
 
 
 def _compare_repeats(first: Plan, again: Plan) -> str:
     """Describe the first field in which two runs with the same seed differ in any bit; empty if
     none does.
     """
-    one, other = ([*map(repr, plain.pack(plan)["Plan"])] for plan in (first, again))
+    one, other = ([*map(repr, plain_values.pack(plan)["Plan"])] for plan in (first, again))
     field = next((name for name, *two in zip(Plan._fields, one, other) if two[0] != two[1]), "")
     return field and (
         f"{field}: another value from the same generator; all random numbers come from rng, and "

@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 
 from bezierplan.planners import find_setting_fault, is_file, load_planner, read_settings
 from bezierplan.planners.parts.settings import read_setting
+from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, suggest_closest
-from bezierplan.schema.words import LONGEST, describe_in_one_line, escape
+from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -169,7 +170,7 @@ def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> N
         check_known(name, known, location)
 
 
-def check_settings(module: ModuleType, settings: dict[str, Any], location: str) -> None:
+def check_settings(module: ModuleType, settings: Settings, location: str) -> None:
     """Raise Fault, beginning with a location, unless all settings of a planner are there, have the
     right types and ranges, and satisfy the planner's own `check`. Other names are ignored.
     """

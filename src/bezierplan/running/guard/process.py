@@ -21,9 +21,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bezierplan.machine import opened
+from bezierplan.machine import opened_files
 from bezierplan.places import PACKAGE
-from bezierplan.running.guard import plain, worker
+from bezierplan.running.guard import plain_values, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, describe_end
 
 logger = logging.getLogger(__name__)
@@ -57,13 +57,13 @@ def run_isolated(
     todo = partial(worker.yield_plain_answers, work=work, tasks=tasks, again=again)
     for each in run_function(todo, name, limit, hashing, _STARTS):
         reply = worker.Reply(*each)
-        yield reply._replace(result=plain.unpack(reply.result))
+        yield reply._replace(result=plain_values.unpack(reply.result))
 
 
 def run_function(
     work: Callable[[Callable[[str], None]], Iterator[Any]],
     name: str,
-    limit: float | None = None,
+    limit: float | None,
     hashing: int = 0,
     starts: float = 0.0,
 ) -> list[Any]:
@@ -83,11 +83,14 @@ def run_function(
         job.write_bytes(pickle.dumps((name, work), protocol=5))
         lines.touch()
         empty.mkdir()
+        # This package first, then what the PYTHONPATH of this environment has.
+        python_path = [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]
+        own = {"PYTHONPATH": os.pathsep.join(filter(None, python_path))}
         with printed.open("wb") as output:
             process = subprocess.Popen(
                 [sys.executable, "-m", worker.__name__, job, lines],
                 cwd=empty,
-                env=os.environ | {"PYTHONHASHSEED": str(hashing), "PYTHONPATH": _build_path()},
+                env=os.environ | own | {"PYTHONHASHSEED": str(hashing)},
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
@@ -102,11 +105,6 @@ def run_function(
                 process.wait()
         _log(printed, name)
         return _read(lines, name, ended)
-
-
-def _build_path() -> str:
-    """Return the PYTHONPATH of the process: this package first, then that of this environment."""
-    return os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]))
 
 
 def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
@@ -158,7 +156,7 @@ def _read(lines: Path, name: str, end: str) -> list[Any]:
         elif kind == "fails":
             failures.setdefault(*value)
         else:
-            opened.SEEN.update(value)
+            opened_files.SEEN.update(value)
             break
     else:
         # Without its last line, the process did not come to its end.

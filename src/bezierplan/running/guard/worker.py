@@ -18,10 +18,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.machine import opened
+from bezierplan.machine import opened_files
 from bezierplan.planners import Plan, load_planner
 from bezierplan.running import answer
-from bezierplan.running.guard import plain
+from bezierplan.running.chunk import Settings
+from bezierplan.running.guard import plain_values
 from bezierplan.running.jobs.log import describe_error
 from bezierplan.running.jobs.watchdog import (
     LEFT,
@@ -31,7 +32,7 @@ from bezierplan.running.jobs.watchdog import (
 )
 from bezierplan.running.simulation import robot
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.schema.words import describe_in_one_line
+from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
@@ -68,7 +69,7 @@ class Task(NamedTuple):
     name: str
     problem: str
     seed: list[str | int] | int
-    settings: dict[str, Any]
+    settings: Settings
 
     def generator(self) -> np.random.Generator:
         """Return a new generator with the run's random numbers."""
@@ -88,7 +89,7 @@ class Work(NamedTuple):
     problems: dict[str, Problem]
     function: str = "plan"
     worlds: dict[str, World] | None = None
-    policy: dict[str, Any] | None = None
+    policy: Settings | None = None
 
     def run_task(self, task: Task, rng: np.random.Generator) -> Any:
         """Make a plan, a track or a ride."""
@@ -103,7 +104,7 @@ class Work(NamedTuple):
 def _plan_for_view(
     module: ModuleType,
     rng: np.random.Generator,
-    settings: dict[str, Any],
+    settings: Settings,
     warm: bool,
     view: Problem,
     last: Any,
@@ -217,7 +218,7 @@ def yield_plain_answers(
             with answer.wrap_errors(task.name):
                 if work.function == "plan" and not work.worlds:
                     plan = answer.convert_answer(plan)
-            yield reply._replace(result=plain.pack(plan))
+            yield reply._replace(result=plain_values.pack(plan))
         except PlannerFailure as failure:
             yield failure
 
@@ -233,7 +234,7 @@ def run_job_file(job_file: str, lines_file: str) -> None:
     for limit, most in LIMITS.items():
         with suppress(ValueError, OSError, AttributeError):  # not every system has each
             resource.setrlimit(getattr(resource, limit), (most, most))
-    opened.watch()
+    opened_files.watch()
     with open(lines_file, "a", encoding="utf-8") as lines:
 
         def say(kind: str, value: Any) -> None:
@@ -260,7 +261,7 @@ def run_job_file(job_file: str, lines_file: str) -> None:
                 else f"{name}: {describe_in_one_line(error)}"
             )
             say("fails", [text, describe_error(error)])
-        say("done", sorted(opened.SEEN))
+        say("done", sorted(opened_files.SEEN))
         for stream in filter(None, (sys.stdout, sys.stderr)):
             with suppress(OSError, ValueError):
                 stream.flush()

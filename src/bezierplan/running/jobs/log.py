@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
-from bezierplan.schema.words import describe_in_one_line, escape
+from bezierplan.schema.safe_text import describe_in_one_line, escape
 
 LAST = "CRITICAL "
 """Beginning of the line in a failed job's log that says why it failed."""

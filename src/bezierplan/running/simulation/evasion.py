@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.running.simulation.motion_check import measure_nearest
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
@@ -70,7 +71,7 @@ def _find_best(robot, moves, centres, drift, radii, margin, bounds):
                 # the robot stays.
                 dx, dy = robot[0] - centres[k, 0], robot[1] - centres[k, 1]
                 vx, vy = move_x - drift[k, 0], move_y - drift[k, 1]
-                depth = min(depth, _measure_nearest(dx, dy, vx, vy) - radii[k])
+                depth = min(depth, measure_nearest(dx, dy, vx, vy) - radii[k])
                 reach = radii[k] + margin
                 met = _find_contact(dx, dy, vx, vy, reach)
                 if met >= steps:
@@ -86,14 +87,6 @@ def _find_best(robot, moves, centres, drift, radii, margin, bounds):
             if i == 0 and depth == 0.0 and free == _AHEAD:
                 return robot
     return best
-
-
-@allocation_free
-def _measure_nearest(dx, dy, ex, ey):
-    """Return the least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
-    size = ex * ex + ey * ey
-    share = min(max(-(dx * ex + dy * ey) / size, 0.0), 1.0) if size > 0.0 else 0.0
-    return math.hypot(dx + share * ex, dy + share * ey)
 
 
 @allocation_free

@@ -104,13 +104,12 @@ def _measure_approach(points, times, centres, velocities, walls, radii, toleranc
                 dx, dy = _compute_relative(points, i, one, before[k], after[k], begin - step)
                 end_x, end_y = _compute_relative(points, i, other, before[k], after[k], end - step)
                 ex, ey = end_x - dx, end_y - dy
-                size, along, apart = ex * ex + ey * ey, dx * ex + dy * ey, dx * dx + dy * dy
-                share = min(max(-along / size, 0.0), 1.0) if size > 0.0 else 0.0
-                nearest = math.hypot(dx + share * ex, dy + share * ey) - radii[k]
+                nearest = measure_nearest(dx, dy, ex, ey) - radii[k]
                 # A motion that ends exactly with a step belongs to that step, not to the next one.
                 place = min(step - first_step, len(clearance) - 1)
                 clearance[place] = min(clearance[place], nearest)
                 if nearest < -tolerance:
+                    size, along, apart = ex * ex + ey * ey, dx * ex + dy * ey, dx * dx + dy * dy
                     excess = apart - radii[k] * radii[k]
                     entry = (
                         0.0
@@ -122,6 +121,14 @@ def _measure_approach(points, times, centres, velocities, walls, radii, toleranc
                 break
             begin = end
     return collision_at, clearance
+
+
+@allocation_free
+def measure_nearest(dx, dy, ex, ey):
+    """Return the least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
+    size = ex * ex + ey * ey
+    share = min(max(-(dx * ex + dy * ey) / size, 0.0), 1.0) if size > 0.0 else 0.0
+    return math.hypot(dx + share * ex, dy + share * ey)
 
 
 @allocation_free
@@ -165,7 +172,4 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
 
 def cut_motion(motion: Motion, begin: float, end: float) -> Motion:
     """Return the part of a motion between two times, with at least two vertices."""
-    inside = (motion.times > begin) & (motion.times < end)
-    times = np.concatenate([[begin], motion.times[inside], [end]])
-    ends = motion.at(np.array([begin, end]))
-    return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)
+    return Motion(*ways.cut(*motion, begin, end))

@@ -17,6 +17,7 @@ from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way, build_drivable, build_way
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import Place
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
 
@@ -59,7 +60,7 @@ class Ride(NamedTuple):
 class _Log:
     """The motion so far."""
 
-    def __init__(self, place: tuple[float, float]) -> None:
+    def __init__(self, place: Place) -> None:
         self.points, self.times, self.waited = [np.array([place], dtype=float)], [np.zeros(1)], 0.0
 
     def motion(self) -> Motion:
@@ -113,9 +114,15 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
         if event == ARRIVED:
             return Ride(log.motion(), True, log.waited, plans)
         if event == STOPPED:
-            aside = _find_place_aside(world, log, time, policy)
-            time = _find_end_of_wait(world, time)
-            if aside is None:
+            place = log.points[-1][-1]
+            changing = isinstance(world, ChangingCells)
+            aside = place
+            if policy.evades and not changing:
+                aside = find_refuge(world, place, round(time), policy)
+            # A robot without a way looks again after a step, or as soon as a cell changes.
+            changes = world.moments[world.moments > time] if changing else np.empty(0)
+            time = float(min(math.floor(time) + 1, changes.min(initial=math.inf), world.end))
+            if np.array_equal(aside, place):
                 log.wait(time)
             else:
                 log.drive(aside, time)
@@ -132,23 +139,6 @@ def _follow(
         return cells.follow(world, along, time, policy)
     event, reached = circles.follow(world, along, round(time), policy)
     return event, time + np.arange(len(reached)), reached
-
-
-def _find_place_aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
-    """Return the place (2,) to which a robot that would stop steps aside; None if it stays."""
-    if not policy.evades or isinstance(world, ChangingCells):
-        return None
-    place = log.points[-1][-1]
-    found = find_refuge(world, place, round(time), policy)
-    return None if np.array_equal(found, place) else found
-
-
-def _find_end_of_wait(world: World, time: float) -> float:
-    """Return when a robot without a way looks again: after a step, or as soon as a cell changes."""
-    changes = (
-        world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
-    )
-    return float(min(math.floor(time) + 1, changes.min(initial=math.inf), world.end))
 
 
 def _plan(
@@ -194,7 +184,7 @@ def _plan(
     return record_plan(None, math.inf, math.nan), None, state
 
 
-def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:
+def _is_free(world: World, problem: Problem, point: Place) -> bool:
     """Return whether a place is free in the workspace that a planner sees. Where circles are drawn
     as cells, the whole cell must be.
     """

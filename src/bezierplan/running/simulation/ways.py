@@ -34,8 +34,7 @@ class Way(NamedTuple):
 
     def part(self, begin: float, end: float) -> np.ndarray:
         """Return the polyline (m, 2) between two lengths of way, with at least two points."""
-        inside = self.points[(self.at > begin) & (self.at < end)]
-        return np.concatenate([self.place(begin)[None], inside, self.place(end)[None]])
+        return cut(self.points, self.at, begin, end)[0]
 
 
 def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
@@ -44,6 +43,18 @@ def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) 
     at: (n,) the value at each point.
     """
     return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
+
+
+def cut(
+    points: np.ndarray, at: np.ndarray, begin: float, end: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the part between two values of what moves straight from point to point (n, 2): at
+    least two points, and the value at each. at: (n,) the value at each point.
+    """
+    inside = (at > begin) & (at < end)
+    first, last = find_places(points, at, np.array([begin, end]))
+    between = np.concatenate([[begin], at[inside], [end]])
+    return np.concatenate([[first], points[inside], [last]]), between
 
 
 def build_way(points: np.ndarray) -> Way:

@@ -41,7 +41,6 @@ class Options(RunsPanel):
     """Keys of the panel."""
 
     rerun: ClassVar[bool] = True
-    tracks: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
     by: Metric = Field(

@@ -5,7 +5,7 @@ use on a map of one's own.
 from types import SimpleNamespace
 
 from bezierplan.analysis import words
-from bezierplan.figures.page.reader import Row
+from bezierplan.running.columns import Row
 
 
 def describe_scale(scale: str, repeats: list[list[int]], evidence: bool) -> str:

@@ -3,20 +3,17 @@
 """
 
 import math
-from typing import Any
 
 import numpy as np
 
-from bezierplan.running.columns import DriveOutcome, DriveTimes, Outcome
+from bezierplan.running.columns import DriveOutcome, DriveTimes, Outcome, Row
 from bezierplan.running.simulation import cells, motion_check, ways
 from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World
 
 
-def judge_drive(
-    ride: Ride, drew: bool, problem: Problem, world: World
-) -> tuple[dict[str, Any], dict[str, Any]]:
+def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple[Row, Row]:
     """Judge a drive; return its columns (`Outcome`, `DriveOutcome`) and its trace.
 
     The trace has x and y at step 0, 1, ... and at the end, the clearance in each step, all in

@@ -5,7 +5,6 @@ its own rows, so that a later change of any column shows.
 import hashlib
 import json
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
@@ -24,7 +23,7 @@ _TYPES = {
 }
 
 
-def build_table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
+def build_table(rows: list[columns.Row], *declared: type) -> pa.Table:
     """Build a table from rows. Declared columns have their types, others that of their values.
 
     Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError
