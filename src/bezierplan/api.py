@@ -821,7 +821,8 @@ def problems(experiment: str) -> dict[str, Problem]:
 
     key, _, name = experiment.partition("/")
     check_known(key, _list_keys(), "experiment: study")
-    check_known(name, _read_study(key).experiments, "experiment")
+    known = [f"{key}/{each}" for each in _read_study(key).experiments]
+    check_known(experiment, known, "experiment")
     described = build_problems_job(_read_study(key), name, "full")
     return problem_files.build_all(described, _read_study(key).folder)[0]
 

@@ -3,14 +3,16 @@
 import inspect
 import re
 from argparse import SUPPRESS, ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NoReturn, get_args, get_origin
+from typing import Annotated, Any, NoReturn, get_args, get_origin
 
 from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault
 from bezierplan.workspaces.limits import Place
 
 Settings = dict[str, Any]
+OutFile = Annotated[Path, "is written"]
 
 
 class Parser(ArgumentParser):
@@ -120,6 +122,19 @@ def _read_settings(text: str) -> Settings:
     return settings
 
 
+def _read_out(text: str) -> Path:
+    """Return a file to write from a word. A wrong folder is told before the work, not after it."""
+    if not (folder := Path(text).parent).is_dir():
+        raise ArgumentTypeError(f"{text}: {folder} is no folder")
+    return Path(text)
+
+
+def check_suffix(option: str, file: Path | None, suffixes: Collection[str]) -> None:
+    """Raise Fault for a file to write whose suffix is not among those that the option takes."""
+    if file and file.suffix not in suffixes:
+        raise Fault(f"{option}: {file}; expected a file that ends in {', '.join(suffixes)}")
+
+
 READS: dict[Any, tuple[Callable[[str], Any], str]] = {
     Place: (_read_place, "X,Y"),
     Settings: (_read_settings, "'{NAME: VALUE, ...}'"),
@@ -127,6 +142,7 @@ READS: dict[Any, tuple[Callable[[str], Any], str]] = {
     int: (int, "N"),
     float: (float, "NUMBER"),
     Path: (Path, "FILE"),
+    OutFile: (_read_out, "FILE"),
     str: (str, "NAME"),
 }
 """Type of a parameter -> the function that reads it from a word, and its name in the help."""

@@ -2,6 +2,10 @@
 
 from pathlib import Path
 
+from bezierplan.commands import is_study
+from bezierplan.places import STUDIES
+from bezierplan.schema.checked import Fault
+
 
 def main(folder: Path) -> None:
     """Print every fault of a study, as a command that runs it does; exit with status 2 if there is
@@ -10,7 +14,7 @@ def main(folder: Path) -> None:
     Parameters
     ----------
     folder : Path
-        that of the study
+        of the study, or the name of one of the project's
 
     Examples
     --------
@@ -18,5 +22,8 @@ def main(folder: Path) -> None:
     """
     from bezierplan.study import reading
 
-    reading.check_names(reading.load([folder]))
+    found = folder if is_study(str(folder)) else STUDIES / folder
+    if not is_study(str(found)):
+        raise Fault(f"{folder}: expected a folder with a file experiments.yaml")
+    reading.check_names(reading.load([found]))
     print(f"{folder}: no fault")

@@ -10,6 +10,7 @@ import yaml
 
 from bezierplan.commands.arguments import Place
 from bezierplan.places import PACKAGE, TREE
+from bezierplan.running import problems
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.workspaces import files
@@ -56,34 +57,40 @@ def main(
         raise Fault("expected --from, --start and --target together: a map of your own")
     if from_:
         workspace = describe(from_, cells=True)
-        # A map that cannot be read must not leave half a study behind.
-        files.load(workspace, from_.parent)
+        ends = {"start": list(start), "target": list(target)}
+        # A map that cannot be read, or an end that is not free, must not leave half a study behind.
+        problems.build("", ends, files.load(workspace, from_.parent))
     shutil.copytree(
         EXAMPLE if example and not from_ else TEMPLATE,
         folder,
         ignore=shutil.ignore_patterns("__pycache__"),
     )
     _replace(folder / "README.md", "mystudy", folder.name)
-    _replace(folder / "README.md", "^bezierplan", _find_call())
+    _replace(folder / "README.md", "^bezierplan", _find_call(folder.parent))
     if from_:
-        ends = {"start": list(start), "target": list(target)}
         _put(folder, files.sources(workspace, from_.parent), workspace, ends)
-    print(f"{folder}: a study; next: {_find_call()} run {shlex.quote(str(folder))}")
+    print(f"{folder}: a study; next: {_find_call(Path())} run {shlex.quote(str(folder))}")
 
 
-def _find_call() -> str:
-    """Return the words by which a shell calls this program once more."""
+def _find_call(folder: Path) -> str:
+    """Return the words by which a shell in a folder calls this program once more."""
     first = sys.argv[0]
-    if Path(first).name == "bezierplan":
-        return "bezierplan" if first == shutil.which("bezierplan") else shlex.quote(first)
-    return f"{shlex.quote(sys.orig_argv[0])} -m bezierplan"
+    if own := Path(first).name == "bezierplan":
+        if first == shutil.which("bezierplan"):
+            return "bezierplan"
+    else:
+        first = sys.orig_argv[0]
+    if "/" in first and not folder.samefile(Path()):
+        first = str(Path(first).absolute())  # a relative path leads nowhere from there
+    return shlex.quote(first) + " -m bezierplan" * (not own)
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:
     """Put a map in place of the template's room."""
+    # Before the copies: a map of one's own may have the same name.
+    (folder / "room.txt").unlink()
     for source in sources:
         shutil.copyfile(source, folder / source.name)
-    (folder / "room.txt").unlink()
     # The published number is about the room.
     shutil.rmtree(folder / "published")
     _replace(folder / "artefacts.yaml", "    published: lengths.csv\n", "")

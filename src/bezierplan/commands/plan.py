@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.commands import arguments
-from bezierplan.commands.arguments import Place
+from bezierplan.commands.arguments import OutFile, Place
 from bezierplan.geometry import path_files
 from bezierplan.schema.checked import Fault
 
@@ -24,7 +24,7 @@ def main(
     *,
     start: Place | None = None,
     target: Place | None = None,
-    out: Path | None = None,
+    out: OutFile | None = None,
     step: float | None = None,
     **options: Any,
 ) -> None:
@@ -67,7 +67,10 @@ def main(
         --settings '{turning_radius: 0.5}' --out robot.csv
     """
     if out:
-        _check_out(out, map)
+        # Before planning, which may take long.
+        arguments.check_suffix("out", out, FILES)
+        if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
+            raise Fault(f"out: {out}: is there, with the map's name; expected another file")
     if not map.suffix and not map.exists():
         map = api.example_map(str(map))
     names = {parameter.name for parameter, *_ in arguments.read_parameters(api.read_map)}
@@ -94,13 +97,3 @@ def _fail(message: str) -> NoReturn:
     """End with status 1: the input is right, but there is no path."""
     print(message, file=sys.stderr)
     sys.exit(1)
-
-
-def _check_out(out: Path, map: Path) -> None:
-    """Raise Fault for a file that cannot be written, or that belongs to the map. This comes before
-    planning, which may take long.
-    """
-    if out.suffix not in FILES:
-        raise Fault(f"out: {out}; expected a file that ends in {', '.join(FILES)}")
-    if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
-        raise Fault(f"out: {out}: is there, with the map's name; expected another file")

@@ -7,10 +7,11 @@ import pandas as pd
 from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.analysis.numbers import benchmark
-from bezierplan.commands.arguments import Settings
+from bezierplan.commands.arguments import OutFile, Settings, check_suffix
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import Plan
 from bezierplan.running.answer import check_ends
+from bezierplan.schema.checked import Fault
 from bezierplan.workspaces.problem import Problem
 
 
@@ -19,9 +20,9 @@ def main(
     *candidates: str,
     settings: Settings | None = None,
     repeats: int = 20,
-    problems: Path | None = None,
-    out: Path | None = None,
-    plot: Path | None = None,
+    problems: OutFile | None = None,
+    out: OutFile | None = None,
+    plot: OutFile | None = None,
 ) -> None:
     """Print a row for each method: runs, share of feasible ones, excess over the exact shortest
     path, evaluations, and the mean rank on a problem. The methods of the papers are not run again.
@@ -51,6 +52,8 @@ def main(
     score song2016/routes paths.csv
     score song2016/routes mystudy/walk.py --settings '{tries: 200}' --out scores.csv --plot best.svg
     """
+    check_suffix("out", out, [".csv"])
+    check_suffix("plot", plot, [".svg", ".png", ".pdf"])
     asked = api.problems(experiment)
     if problems:
         benchmark.describe_problems(asked).to_csv(problems, index=False)
@@ -78,7 +81,10 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     answers_read = []
     for name, path, evaluations in benchmark.read_paths(file, problems):
         problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
-        check_ends(path, problem)
+        try:
+            check_ends(path, problem)
+        except ValueError as fault:
+            raise Fault(f"{file}: {name}: {fault}") from None
         judged = answers.compute_judgement(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
         answers_read.append(

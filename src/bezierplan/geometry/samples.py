@@ -14,6 +14,8 @@ from bezierplan.workspaces.problem import Path
 _INTERVALS = 64
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NEWTON_STEPS = 4
+# Samples of a path at most: more are a slip of the step, and would fill the memory.
+_MOST = 10_000_000
 
 
 class Samples(NamedTuple):
@@ -76,6 +78,9 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
         n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
     if not isinstance(n, int | np.integer) or n < 2:
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
+    if n > _MOST:
+        given = f"n: {n}" if step is None else f"step: {step}: {n} samples"
+        raise ValueError(f"{given}; expected at most {_MOST} samples")
     distance = np.linspace(0.0, length, n)
     interval = np.clip(np.searchsorted(cumulative, distance, side="right") - 1, 0, len(speeds) - 1)
     piece, low = interval // _INTERVALS, knots[interval % _INTERVALS]

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-# Places in degrees have an extent of at most this share of their distance from the origin.
-_AWAY = 0.02
+# How often places in degrees fit between themselves and the origin, at least: a country does so
+# twice; a map in metres mostly begins near the origin.
+_AWAY = 2.0
 
 ROLES = ("border", "obstacle", "start", "target")
 
@@ -114,7 +115,8 @@ def _refuse_degrees(shapes: list[Shape]) -> None:
     bounds = shapely.total_bounds([shape.polygon for shape in shapes])
     low, high = bounds[:2], bounds[2:]
     far, extent = np.maximum(-low, high), max(high - low)
-    if (far <= (180, 90)).all() and extent < _AWAY * max(far):
+    gap = np.hypot(*np.maximum(0, np.maximum(low, -high)))
+    if (far <= (180, 90)).all() and gap > _AWAY * extent:
         raise ValueError(
             f"places about {low[0]:g}, {low[1]:g} with an extent of {extent:.2g} look like "
             "degrees; expected x and y as lengths: project them, or move a map in metres near the "

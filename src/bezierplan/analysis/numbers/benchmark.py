@@ -6,9 +6,9 @@ from pathlib import Path as FilePath
 import numpy as np
 import pandas as pd
 
-from bezierplan.geometry import shortest_paths
+from bezierplan.geometry import curves, shortest_paths
 from bezierplan.places import OUTCOME
-from bezierplan.schema.checked import check_all
+from bezierplan.schema.checked import Fault, check_all, check_known
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -70,13 +70,20 @@ def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path 
     a problem that is not among those named.
     """
     paths = []
-    rows = pd.read_csv(file, dtype={"problem": str, "points": str})
+    try:
+        rows = pd.read_csv(file, dtype={"problem": str, "points": str})
+    except pd.errors.EmptyDataError:
+        raise Fault(f"{file}: is empty; expected columns problem, curve, points") from None
     check_all(("problem", "curve", "points"), rows.columns, f"{file}: columns")
     check_all(rows["problem"], problems, f"{file}: problem")
-    for row in rows.to_dict("records"):
+    for number, row in enumerate(rows.to_dict("records"), 1):
         path = None
         if isinstance(row["points"], str):
-            points = np.array(row["points"].split(), dtype=float).reshape(-1, 2)
+            check_known(row["curve"], curves.CURVES, f"{file}: row {number}: curve")
+            try:
+                points = np.array(row["points"].split(), dtype=float).reshape(-1, 2)
+            except ValueError:
+                raise Fault(f"{file}: row {number}: points: expected x y x y ...") from None
             path = Path(row["curve"], points)
         paths.append((row["problem"], path, row.get("evaluations", np.nan)))
     return paths
