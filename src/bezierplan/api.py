@@ -121,6 +121,13 @@ class Judgement:
         ------
         ValueError
             If there is no path, or for an `n` or `step` out of range.
+
+        Examples
+        --------
+        >>> room = Grid(np.zeros((4, 4), dtype=bool), cell=1.0, unit="m")
+        >>> answer = plan(Problem("room", room, start=(0.5, 0.5), target=(3.5, 0.5)))
+        >>> answer.sample(3).x.round(9).tolist()
+        [0.5, 2.0, 3.5]
         """
         if self.path is None:
             raise ValueError("no path was found, so there is nothing to sample or to write")
@@ -349,6 +356,14 @@ def read_map(
     ------
     ValueError
         Names file, place and what is expected.
+
+    Examples
+    --------
+    >>> room = read_map(example_map("gaps"))
+    >>> room.bounds, len(room.obstacles)
+    ((0.0, 20.0, 0.0, 20.0), 6)
+    >>> read_map(example_map("gaps"), cell=1.0, robot_radius=0.3).occupied.shape
+    (20, 20)
     """
     described = map_files.describe(
         File(file),
@@ -366,6 +381,9 @@ def read_map(
 def example_map(name: str) -> File:
     """Return the file of a map of the studies, such as ``"gaps"`` or ``"figure2"``. Raises
     ValueError.
+
+    >>> example_map("gaps").name
+    'gaps.geojson'
     """
     files = {file.stem: file for file in STUDIES.glob("*/workspaces/*.[gt]*")}
     check_known(name, files, "map")
@@ -816,6 +834,12 @@ def problems(experiment: str) -> dict[str, Problem]:
     ------
     ValueError
         For an unknown one.
+
+    Examples
+    --------
+    >>> routes = problems("song2016/routes")
+    >>> [*routes][:2], routes["0_15"].start
+    (['0_15', '15_255'], (5.0, 5.0))
     """
     from bezierplan.study.experiments import build_problems_job
 
@@ -871,6 +895,12 @@ def replay(run: str) -> Answer:
     ValueError
         States the unknown part of the name; a drive through a moving world has no single path and
         is replayed at the command line.
+
+    Examples
+    --------
+    >>> answer = replay("song2016/routes/15_240/shortest_path/0")
+    >>> answer.feasible, round(answer.length, 3)
+    (True, 220.849)
     """
     with require_extra():
         from bezierplan.study import replays

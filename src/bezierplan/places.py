@@ -61,6 +61,7 @@ def set_kernel_target() -> None:
     """
     flags = Path("/proc/cpuinfo")
     words = flags.read_text(encoding="utf-8").split() if flags.is_file() else []
+    # Every processor of the kind x86-64-v3 has these, and older ones lack some.
     named = (
         "x86-64-v3" if {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words} else "generic"
     )

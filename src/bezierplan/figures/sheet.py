@@ -28,7 +28,8 @@ _NARROW_PANEL, _SMALLER = 2.0, 0.6
 # Width of a letter of the smallest text, and what labels beside a panel take, in inches.
 _LETTER, _BESIDE = 0.057, 0.45
 
-# Rounds after which the sheet is as high as what is on it.
+# Rounds after which the sheet is as high as what is on it: a lower sheet is laid out anew, so one
+# cut leaves some empty room.
 _ROUNDS = 2
 
 

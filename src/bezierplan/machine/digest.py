@@ -131,6 +131,7 @@ def _parse(source: bytes) -> _Syntax:
             imports.update((0, alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             imports.update((node.level, node.module or "", alias.name) for alias in node.names)
+        # Docstrings do not count, unless the file itself reads some.
         elif (
             isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
             and ast.get_docstring(node) is not None
@@ -206,6 +207,7 @@ def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, s
     """
     trees = []
     named = set(modules)
+    # Not the whole module of a function: it has many jobs, and an edit of one would rerun them all.
     for function in functions:
         tree, imports, _ = _parse(textwrap.dedent(inspect.getsource(function)).encode())
         trees.append(tree)

@@ -197,6 +197,7 @@ def remove_old(folder: Path, most: int) -> None:
         for state in sorted(folder.iterdir(), key=lambda state: state.stat().st_mtime)
     }
     total = sum(sizes.values())
+    # What was compiled within a day may be in use by another process.
     for state, size in sizes.items():
         if total > most and time.time() - state.stat().st_mtime > _DAY:
             shutil.rmtree(state, ignore_errors=True)

@@ -30,8 +30,9 @@ EXCESS = 0.01
 this share at most.
 """
 
+# Directions of travel that differ by less, in radians, are one: points carry rounding errors. A
+# radius that is smaller than asked by less than `_SAME`, as a share, is the one asked for.
 _STRAIGHT = 1e-8
-
 _SAME = 1e-9
 
 
@@ -109,6 +110,7 @@ def yield_plans(
         )
         replies = (worker.Reply(0, *worker.time_call(call), True) for call in calls)
     for run in runs:
+        # Names that a runs table refuses are refused here too: what plans here runs in a study.
         made, taken = [next(replies) for _ in run.legs], {*TAKEN, *run.settings}
         with answer.wrap_errors(run.label):
             legs = [

@@ -75,6 +75,7 @@ def _read_end(end: str, description: dict, workspace: Workspace) -> Place:
             raise ValueError(f"{key}: {error}") from None
     else:
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
+    # First on the map itself: a place that is not free there is no fault of the robot's radius.
     grown, home = find_growth(workspace), original(workspace)
     x_low, x_high, y_low, y_high = home.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):

@@ -314,6 +314,7 @@ def run_again(
     These are the first run of each file and one in `MADE_AGAIN`, chosen by a digest, or all. wrong:
     files with faults, whose runs are not repeated.
     """
+    # The digest is that of all runs: which ones are repeated is known only once all are there.
     again = partial(_run_file_again, digest=digest, share=1 if every else MADE_AGAIN)
     files = [
         (task.problems, file, chunk)

@@ -19,6 +19,7 @@ class Fault(ValueError):
     """
 
     def __init__(self, *lines: str) -> None:
+        # A fault quotes what stands in the file, which may be of any length.
         self.lines = [escape(line, 1500) for line in lines]
         super().__init__(self.lines[0])
 

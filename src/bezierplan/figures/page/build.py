@@ -143,6 +143,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
+        # A misspelt name of a template is a fault, not an empty text.
         undefined=jinja2.StrictUndefined,
         keep_trailing_newline=True,
     )

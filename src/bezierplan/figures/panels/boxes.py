@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Whiskers end at the last value within this many interquartile ranges of the box.
+# Whiskers end at the last value within this many interquartile ranges of the box: Tukey's rule, the
+# usual one of matplotlib and seaborn.
 _REACH = 1.5
 
 # Parts of a box, of which seaborn makes the same box, and those that are marks.
@@ -113,6 +114,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     order = style.list_in_order(frame[by], options.where)
     look = {"color": style.LIGHT_BLUE, "linecolor": style.BLUE, "linewidth": 0.7, "width": 0.6}
     box = frame[frame["part"].isin(_BOX)]
+    # The rows are the five numbers of each box: of these seaborn must find no outliers (`whis`).
     with warnings.catch_warnings(action="ignore"):  # seaborn passes what matplotlib will drop
         sns.boxplot(box, x=by, y="value", order=order, whis=(0, 100), ax=axes, **look)
     places = frame[by].map(order.index, na_action="ignore")

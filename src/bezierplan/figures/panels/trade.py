@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _BASELINE = "rounded_shortest_path"
 
 # A method with fewer free paths than this share is drawn hollow, and adds nothing; nor does one
-# with fewer that are free and have no corners.
+# with fewer that are free and have no corners: medians of the few that succeed would flatter it.
 _OFTEN_FREE = 0.95
 
 # Excesses that differ by less are equal.
@@ -115,7 +115,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             end = "" if others else "_low"
             for name, place in places.items():
                 bend, excess = place[f"x{end}"], place[f"y{end}"]
-                # Of all points of the line that are as smooth, the shortest.
+                # Of all points of the line that are as smooth, the shortest. The radius is a little
+                # wider than the method's own bend: else rounding errors could make the point's bend
+                # the sharper one, and the method would seem to add something.
                 radius = 1.001 / bend if bend > 0 else math.inf
                 point = _round_shortest_path(results.problems[name], bounds[name], radius)
                 line = lines.loc[lines["problem"] == name, ["x", "y"]].to_numpy()

@@ -34,7 +34,9 @@ MOST_PRINTED = 20_000
 # Longest pause, in seconds, between two looks at whether a process is done.
 _LOOK = 0.05
 _STARTS = 60
-"""Seconds that a process of runs may take at least until its first run begins."""
+"""Seconds that a process of runs may take at least until its first run begins: a study's time limit
+may be shorter than Python and numba take to start on a busy machine.
+"""
 
 
 def run_isolated(
@@ -114,6 +116,7 @@ def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, star
     it has at least until the first.
     """
     size, since, pause = -1, 0.0, 0.001
+    # No system call waits for the end of a process and for a line of a file at once.
     while True:
         ended, status = os.waitpid(process.pid, os.WNOHANG)
         if ended:

@@ -21,7 +21,9 @@ from bezierplan.schema.safe_text import describe_in_one_line, escape
 LAST = "CRITICAL "
 """Beginning of the line in a failed job's log that says why it failed."""
 MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
-"""Most frames and lines of a traceback in a log, and most characters of a line."""
+"""Most frames and lines of a traceback in a log, and most characters of a line: a recursion without
+end has a thousand frames, and a planner's message may be of any length.
+"""
 MOST_TOLD = 20
 """Most runs of a job that are named as faulty, one line each."""
 
