@@ -12,7 +12,7 @@ from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 from studies import studies, study
 
-from bezierplan.analysis import markdown
+from bezierplan.analysis import rst
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
@@ -57,7 +57,7 @@ HOSTILE = (
 
 
 def test_caption_is_one_line_that_says_just_what_it_says():
-    html = publish_parts(markdown.escape_rst(HOSTILE), writer="html")["body"]
+    html = publish_parts(rst.escape_rst(HOSTILE), writer="html")["body"]
     assert re.fullmatch("<p>[^<>]*</p>", html.strip())
     plain = html.replace("&lt;", "<").replace("&gt;", ">").strip()
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"

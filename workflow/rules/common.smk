@@ -21,7 +21,7 @@ set_kernel_target()
 
 from snakemake.cli import get_argument_parser
 
-from bezierplan.analysis import markdown
+from bezierplan.analysis import rst
 from bezierplan.running.jobs import forks, watchdog
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
@@ -290,7 +290,7 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escape_rst(
+    return rst.escape_rst(
         captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale).write()
     )
 
