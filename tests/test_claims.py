@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from bezierplan.analysis import metrics, statistics, words
+from bezierplan.analysis import legend, metrics, statistics
 from bezierplan.analysis.claims import columns, sentences, variants, verdicts
 from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims.claim import Claim
@@ -1151,7 +1151,7 @@ def test_columns():
     assert summary.columns.to_list() == columns.CLAIM_COLUMNS
     assert details.columns.to_list() == columns.CHECK_COLUMNS
     assert details["experiments"].to_list() == ["tried"]
-    assert set(summary["verdict"]) <= set(words.select_words("claim"))
+    assert set(summary["verdict"]) <= set(legend.select_words("claim"))
 
 
 # How often a verdict is right.

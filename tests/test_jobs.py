@@ -16,7 +16,7 @@ from bezierplan.analysis import rst
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import captions, evidence, jobs, page, reading, runs_behind
+from bezierplan.study import captions, evidence, jobs, loading, page, runs_behind
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -25,7 +25,7 @@ RULES = ("runs", "table", "all", "default")
 
 def fault(given):
     with pytest.raises(Fault) as caught:
-        reading.check_names(given)
+        loading.check_names(given)
     return str(caught.value)
 
 
@@ -36,7 +36,7 @@ def elsewhere(tmp_path, key):
 
 
 def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
-    reading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"))
+    loading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"))
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from bezierplan.analysis import rst
 from bezierplan.running.jobs import forks, watchdog
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
-from bezierplan.study import captions, experiments, jobs, page, reading, stored
+from bezierplan.study import captions, experiments, jobs, page, loading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -43,7 +43,7 @@ def or_exit(work, *of):
         sys.exit(2)
 
 
-CONFIG = reading.find_config_file()
+CONFIG = loading.find_config_file()
 # In a module, the configuration is that of the workflow which uses it.
 if not config:
     or_exit(checked.read, CONFIG)
@@ -69,14 +69,14 @@ def targets():
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 # Files of a whole scale are of the studies that are asked for, and of those that they show already.
 PAGES = {
-    scale: reading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES
+    scale: loading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES
 }
-FOLDERS = or_exit(reading.read_config, config)
+FOLDERS = or_exit(loading.read_config, config)
 # A target of one study starts without the others.
-NAMED = reading.select_studies(FOLDERS, targets())
-ASKED = or_exit(reading.load, NAMED)
+NAMED = loading.select_studies(FOLDERS, targets())
+ASKED = or_exit(loading.load, NAMED)
 SHOWN = {key: word for listed in PAGES.values() for key, word in listed.items() if key not in ASKED}
-STUDIES = ASKED | (reading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
+STUDIES = ASKED | (loading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
 # In the order in which they came.
 OF_SCALE = {
     scale: {key: STUDIES[key] for key in {**listed, **ASKED} if key in STUDIES}

@@ -204,7 +204,7 @@ class TableOfRuns(Job):
         """Make the table and its comparison with published numbers."""
 
         from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.numbers import comparison, tables, wholes
+        from bezierplan.analysis.numbers import comparison, order_and_level, tables
         from bezierplan.running import inputs
 
         # The metrics of a study are known once its code is loaded.
@@ -230,7 +230,9 @@ class TableOfRuns(Job):
             placed = compared.dropna(subset="table_row")
             printed = tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
             printed.to_csv(output_files.published, lineterminator="\n")
-            columns = wholes.compare_columns(runs, self.spec, compared, self.name, self.paired)
+            columns = order_and_level.compare_columns(
+                runs, self.spec, compared, self.name, self.paired
+            )
             self.write(columns, output_files.wholes)
         self.write(compared, output_files.comparison)
 
@@ -409,7 +411,7 @@ class Verification(Job):
         """List all files with their digests and the accounts of their jobs."""
         import json
 
-        from bezierplan.analysis.outcome import proof
+        from bezierplan.analysis.outcome import verification
         from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
@@ -418,7 +420,7 @@ class Verification(Job):
         )
         content = recheck.check_sound(verdict) | {
             "digest": verdict.digest,
-            "made_by": proof.describe_version(),
+            "made_by": verification.describe_version(),
             "versions": recheck.read_versions(),
             "studies": self.studies,
             "accounts": [

@@ -16,7 +16,7 @@ def main(folder: Path) -> None:
     --------
     check-study mystudy
     """
-    from bezierplan.study import reading
+    from bezierplan.study import loading
 
-    reading.check_names(reading.load([folder]))
+    loading.check_names(loading.load([folder]))
     print(f"{folder}: no fault")

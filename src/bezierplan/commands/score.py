@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan import api
-from bezierplan.analysis import answers
+from bezierplan.analysis import judgement
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.commands.arguments import Settings
 from bezierplan.geometry.shortest_paths import shortest_path
@@ -79,9 +79,9 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     for name, path, evaluations in benchmark.read_paths(file, problems):
         problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
         check_ends(path, problem)
-        judged = answers.compute_judgement(problem, shortest_path(problem), path)
+        judged = judgement.compute_judgement(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
         answers_read.append(
-            api.Answer(**judged, **answers.list_planner_fields(plan), method=str(file))
+            api.Answer(**judged, **judgement.list_planner_fields(plan), method=str(file))
         )
     return answers_read

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job, Verification
-from bezierplan.analysis.outcome.proof import LIST, PAGE
+from bezierplan.analysis.outcome.verification import LIST, PAGE
 from bezierplan.places import shorten_path
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import alternatives, jobs, page, reading
+from bezierplan.study import alternatives, jobs, loading, page
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
@@ -169,7 +169,7 @@ def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> d
     FileNotFoundError if there are no runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
-    on_page = reading.read_page_studies(folder).items()
+    on_page = loading.read_page_studies(folder).items()
     words_by_key = {
         key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()
     } | named

@@ -158,7 +158,7 @@ def _compute_cell(
         decimals=entry.decimals,
         size=len(counted),
         numbers=np.sort(numbers),
-        # With problem and repeat, by which methods are drawn together (`wholes`).
+        # With problem and repeat, by which methods are drawn together (`order_and_level`).
         by_run=pd.Series(
             measures.values[of_entry],
             pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),

@@ -4,7 +4,7 @@ run show the same.
 
 import pandas as pd
 
-from bezierplan.analysis import naming, words
+from bezierplan.analysis import legend, naming
 from bezierplan.analysis.numbers import comparison
 
 
@@ -38,7 +38,7 @@ def describe_claims(claims: pd.DataFrame) -> str:
     claims = claims[claims["primary"].astype(bool) & ~claims["finding"].astype(bool)]
     if claims.empty:
         return ""
-    groups = words.list_groups("claim")
+    groups = legend.list_groups("claim")
     counts = claims["verdict"].map(groups).value_counts().reindex([*groups.values()], fill_value=0)
     # A group of several verdicts stands there once for each.
     counts = counts[~counts.index.duplicated()]

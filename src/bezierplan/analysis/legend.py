@@ -1,5 +1,5 @@
 """Positions of published numbers, and verdicts on claims: how each is said, shown and counted
-(`words.csv`).
+(`legend.csv`).
 """
 
 import csv
