@@ -19,7 +19,7 @@ import numpy as np
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims.check import OfRuns, PublishedMargin
 from bezierplan.analysis.claims.kinds import load_kind
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, WITHOUT_INTERVAL
 from bezierplan.workspaces.seeds import generator
 
 ALPHA = 0.05
@@ -380,28 +380,37 @@ def _compute_adjusted_difference(
     )
 
 
-def judge_by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
+def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Finding, np.ndarray]:
+    """Measure the effect of two cells, and return it with its draws. The finding has a mark where
+    no test follows: there are too few units, or the sentence is about extremes.
+    """
+    ours, n = compute_our_effect(check, comparison), count_units(comparison)
+    if reason := explain_too_few(comparison):
+        return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
+    margin = compute_margin(check, comparison)
+    finding = Finding(ours, "difference", ours, n=n, margin=margin)
+    if choose_statistic(check) in WITHOUT_INTERVAL:
+        return _judge_by_draws(check, comparison, name, finding), np.empty(0)
+    draws = draw_effects(check, comparison, name)
+    low, high = compute_interval_of_draws(draws)
+    return finding._replace(low95=low, high95=high), draws
+
+
+def _judge_by_draws(check: OfRuns, comparison: Contrast, name: str, finding: Finding) -> Finding:
     """Judge a sentence about extremes by how often it holds in experiments of the paper's size,
     drawn from our runs.
     """
-    statistic = choose_statistic(check)
-    ours = compute_our_effect(check, comparison)
-    margin, n = compute_margin(check, comparison), count_units(comparison)
-    finding = Finding(
-        effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
-    )
+    size = comparison.paper_units
     # Extremes depend on the number of runs.
-    if comparison.paper_units is None:
+    if size is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
-    effects = compute_effect(
-        check, draw_points(comparison, statistic, name, comparison.paper_units), comparison.cells
-    )
-    held = np.mean(is_as_claimed(check, effects, margin))
+    draws = draw_points(comparison, choose_statistic(check), name, size)
+    effects = compute_effect(check, draws, comparison.cells)
+    held = np.mean(is_as_claimed(check, effects, finding.margin))
     return finding._replace(
         mark=mark_share(held),
-        chance_known=n >= ENOUGH * comparison.paper_units,
-        reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
-        "drawn from ours",
+        chance_known=finding.n >= ENOUGH * size,
+        reason=f"holds in {100 * held:.3g} % of experiments of {size} runs drawn from ours",
     )
 
 

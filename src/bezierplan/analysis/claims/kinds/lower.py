@@ -41,7 +41,6 @@ from bezierplan.analysis.claims.check import (
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compare_ranks, compute_a12
-from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
@@ -115,18 +114,13 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
 
 def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     """Test whether the first cell is lower (higher) than the second. name: seeds the draws."""
-    ours = effects.compute_our_effect(check, comparison)
-    n, reason = effects.count_units(comparison), effects.explain_too_few(comparison)
-    if reason:
-        return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if effects.choose_statistic(check) in WITHOUT_INTERVAL:
-        finding = effects.judge_by_draws(check, comparison, name)
+    finding, draws = effects.measure_effect(check, comparison, name)
+    ours, n, margin = finding.effect, finding.n, finding.margin
+    low, high = finding.low95, finding.high95
+    if finding.mark:
         # Below the margin the sentence is open, however often it holds.
-        return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
+        return finding if abs(ours) >= margin else finding._replace(mark="?")
     side, least = effects.SIDES[check.direction], check.least
-    margin = effects.compute_margin(check, comparison)
-    draws = effects.draw_effects(check, comparison, name)
-    low, high = effects.compute_interval_of_draws(draws)
     toward = np.sign(side * ours - least)
     # A claimed least effect takes the place of the margin.
     if not least and abs(ours) < margin:
@@ -152,13 +146,26 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     if not (math.isfinite(ours) or infinite):
         p = math.nan
     size_name, size = _compute_effect_size(check, comparison, side, ours)
-    finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = effects.explain_missing(p) or (
         "" if toward else effects.explain_no_difference(low, high, n)
     )
     negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
-    finding = finding._replace(negligible=negligible, reason=reason)
-    return _remove_p(finding) if ours and _is_constant(comparison) else finding
+    finding = finding._replace(
+        effect_size_name=size_name,
+        effect_size=size,
+        p=p,
+        toward=int(np.nan_to_num(toward)),
+        negligible=negligible,
+        reason=reason,
+    )
+    if not ours or not _is_constant(comparison):
+        return finding
+    # Nothing varies by chance between two constants that differ: the mark stays, without p.
+    return finding._replace(
+        mark=verdicts.choose_mark(finding, p),
+        p=math.nan,
+        reason=reason or "both are constant, so there is no p",
+    )
 
 
 def _is_constant(comparison: Contrast) -> bool:
@@ -170,16 +177,6 @@ def _is_constant(comparison: Contrast) -> bool:
     ]
     return not comparison.boolean and all(
         np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
-    )
-
-
-def _remove_p(finding: Finding) -> Finding:
-    """Remove p from the finding on two constants that differ, since nothing varies by chance, and
-    keep the mark that it gives.
-    """
-    reason = finding.reason or "both are constant, so there is no p"
-    return finding._replace(
-        mark=verdicts.choose_mark(finding, finding.p), p=math.nan, reason=reason
     )
 
 
