@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 import bezierplan as bp
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.results import Results
 from bezierplan.geometry.tightest_turn import largest_curvature
@@ -64,7 +65,7 @@ def rows():
 
 
 def test_a_row_for_each_method_and_problem(rows):
-    assert tuple(rows) == methods.COLUMNS
+    assert [*rows] == COLUMNS_OF["methods"]
     curved, cornered, straight = rows.to_dict("records")
     assert (curved["family"], straight["family"]) == ("in the way", "one")
     assert (curved["straight"], straight["straight"]) == (False, True)

@@ -1,22 +1,4 @@
-"""Results of each method on each problem: a row per study, family of problems, method and problem.
-
-Columns of `methods.csv`:
-
-- study, experiment, family, problem, method: what is measured; a family is a group of problems that
-  the study declares, and empty for the problems of none
-- proposed: whether it is the method that the paper proposes
-- straight: whether the straight line from start to target is free
-- runs, free: number of runs, and the share whose path the certified checker accepts
-- excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
-  runs: median and its 95 % bootstrap interval, empty for one run
-- round, cornered: free runs whose path has no corner, and those whose path has one
-- curvature: largest curvature of the first 100 paths without corners, in 1/unit: median; empty, as
-  the columns after it, for a problem of no family
-- rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
-  that; empty if every free path has a corner
-- rounded_curvature: largest curvature of that path, greater where its turns have no more room
-- cpu_ms, evaluations: CPU time of a run, and the paths that it evaluates: medians of all runs
-"""
+"""Results of each method on each problem, and their summary by families of problems."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, naming, statistics
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.results import Results, build_path
 from bezierplan.geometry.tightest_turn import largest_curvature
 from bezierplan.planners import rounded_shortest_path
@@ -44,12 +27,6 @@ _STRAIGHT = 1e-9
 # Excesses that differ by less are equal, and so are curvatures that differ by a smaller factor: the
 # radii of the rounded path are 2 % apart.
 _EQUAL, _TIGHTER = 1e-6, 1.03
-
-COLUMNS = (
-    *("study", "experiment", "family", "problem", "method", "proposed", "straight", "runs", "free"),
-    *("excess", "excess_low", "excess_high", "round", "cornered", "curvature"),
-    *("rounded", "rounded_curvature", "cpu_ms", "evaluations"),
-)
 
 
 class Family(NamedTuple):
@@ -73,8 +50,8 @@ class Family(NamedTuple):
 def measure_methods(
     experiment: str, results: Results, families: Mapping[str, Family]
 ) -> pd.DataFrame:
-    """Measure each method on each problem of an experiment, a row each: `COLUMNS` but for study and
-    proposed.
+    """Measure each method on each problem of an experiment, a row each: the columns of
+    `methods.csv` but for study and proposed.
     """
     runs = results.runs.assign(
         free=results.runs["feasible"].astype(bool),
@@ -145,8 +122,8 @@ def measure_studies(
     families: Mapping[str, Mapping[str, Family]],
     experiments: Mapping[str, Results],
 ) -> pd.DataFrame:
-    """Measure the methods of all experiments, each `study/experiment`; return their rows with
-    `COLUMNS`. proposed, families: by study.
+    """Measure the methods of all experiments, each `study/experiment`; return the rows of
+    `methods.csv`. proposed, families: by study.
     """
     tables = []
     for place, results in experiments.items():
@@ -154,7 +131,7 @@ def measure_studies(
         rows = measure_methods(name, results, families[study])
         tables.append(rows.assign(study=study, proposed=rows["method"] == proposed[study]))
     rows = pd.concat(tables) if tables else pd.DataFrame()
-    return rows.reindex(columns=COLUMNS)
+    return rows.reindex(columns=COLUMNS_OF["methods"])
 
 
 def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:

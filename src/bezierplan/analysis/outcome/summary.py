@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.numbers import comparison
 
@@ -23,7 +23,7 @@ def gather(
     studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
-    none = pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
+    none = pd.DataFrame(columns=COLUMNS_OF["claims"]).astype({"primary": bool, "finding": bool})
     return {
         "numbers": list_numbers(
             {name: pd.read_csv(file) for name, file in comparison_files.items()}
