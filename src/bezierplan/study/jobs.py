@@ -292,15 +292,14 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
 
 def _list_alternatives(study: Study) -> list[dict[str, str]]:
     """Return a row for the default and for each single alternative: assumption, detail, value."""
-    details = {each.id: each.detail for each in study.assumptions}
     default = alternatives.DEFAULT
-    rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
-    for own in alternatives.build_single_alternatives(study).values():
-        rows += [
-            {"assumption": name, "detail": details[name], "value": str(value)}
-            for name, value in own.values.items()
-        ]
-    return rows
+    details = {default: "The reading behind all tables"}
+    details |= {each.id: each.detail for each in study.assumptions}
+    return [
+        {"assumption": name, "detail": details[name], "value": str(value)}
+        for own in alternatives.build_single_alternatives(study).values()
+        for name, value in (own.values or {default: default}).items()
+    ]
 
 
 # --------------------------------------------------------------------------------------------------
@@ -318,13 +317,11 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
     own, other = (
         build_problems_job(each, experiment, scale).workspaces for each in (study, default)
     )
-    if any(other[name] != home for name, home in own.items()):
-        return False
-    if not method:
-        return True
+    alike = own.items() <= other.items()
+    if not method or not alike:
+        return alike
     made, known = (build_chunk(each, experiment, method, scale, 0) for each in (study, default))
-    places = all(known.problems[name] == place for name, place in made.problems.items())
-    return places and made.settings == known.settings
+    return made.settings == known.settings and made.problems.items() <= known.problems.items()
 
 
 def build_claims(study: Study, scale: str) -> Claims:

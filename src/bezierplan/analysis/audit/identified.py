@@ -32,9 +32,6 @@ NEARBY = 0.05
 place.
 """
 
-UNLIKELY = 0.1
-"""A number counts as identified if chance matches less than this share of the numbers nearby."""
-
 MOST_SHOWN = 4
 
 MOST_PATHS = 10_000
@@ -90,14 +87,6 @@ def list_edges(grid: Grid) -> Ways:
     found = np.hypot(*(centres[first] - centres[second]).T)[free]
     lengths[first[free], second[free]] = lengths[second[free], first[free]] = found
     return Ways(cells, lengths)
-
-
-def is_declared(entry: Identify, row: dict) -> bool:
-    """Return whether an enumeration is declared for a published number, given as its row."""
-    where = {"metric": entry.metric} | entry.where
-    if entry.statistic:
-        where["statistic"] = entry.statistic
-    return all(row.get(column) in convert_to_list(wanted) for column, wanted in where.items())
 
 
 def find_polylines(
@@ -162,15 +151,6 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     )
 
 
-def find_paths(
-    entry: Identify, problem: Problem, value: float, decimals: int
-) -> Identification | None:
-    """Find the paths that a declaration names and whose length is printed as this value."""
-    if entry.diagonal is None:
-        return find_polylines(problem, value, decimals, entry.edges)
-    return find_moves(problem, value, entry.diagonal)
-
-
 def describe_paths(identification: Identification) -> str:
     """Describe the matching paths and the chance of a match in one line."""
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
@@ -194,7 +174,8 @@ def check_declared_paths(
     """
     keys = list_key_columns(published)
     for entry in entries:
-        tries = []
+        tries, named = [], {"statistic": entry.statistic} if entry.statistic else {}
+        where = entry.where | named
         what = (
             f"a free polyline of at most {entry.edges} edges through cell centres"
             if entry.diagonal is None
@@ -203,17 +184,21 @@ def check_declared_paths(
         rule = f"{entry.because}: the length of {what}"
         for row in published.to_dict("records"):
             problem = problems.get(row.get("problem", row.get("workspace")))
-            if not is_declared(entry, row) or problem is None:
-                continue
-            path = find_paths(
-                entry, problem, row["value"], possible.count_decimals(row["as_printed"])
+            declared = all(
+                row.get(column) in convert_to_list(wanted)
+                for column, wanted in [("metric", entry.metric), *where.items()]
             )
+            if not declared or problem is None:
+                continue
+            if entry.diagonal is None:
+                decimals = possible.count_decimals(row["as_printed"])
+                path = find_polylines(problem, row["value"], decimals, entry.edges)
+            else:
+                path = find_moves(problem, row["value"], entry.diagonal)
             if path is None:
                 continue
             tries.append(path)
-            location = describe_cell(
-                row, [*keys, "metric", *(["statistic"] if entry.statistic else [])]
-            )
+            location = describe_cell(row, [*keys, "metric", *named])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
             yield build_audit_row(
                 item, location, rule, row["value"], limit, fits, describe_paths(path)
@@ -226,8 +211,7 @@ def check_declared_paths(
             )
             location = ", ".join(
                 f"{key}={' or '.join(map(str, convert_to_list(wanted)))}"
-                for key, wanted in (entry.where | {"statistic": entry.statistic}).items()
-                if wanted
+                for key, wanted in where.items()
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tries) or None
             yield build_audit_row(item, location, rule, matched, len(tries), fits, told)

@@ -5,7 +5,6 @@ the same cells.
 import itertools
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -112,7 +111,16 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     paired = check.paired
     # Equal units belong together if they share a start or a random workspace.
     if paired is None:
-        paired = _has_shared_draws(check, material)
+        paired = "replicate" in check.model_fields_set or all(
+            material.study.paired.get(name, False) for name in check.experiments
+        )
+    metric_runs = material.results[check.experiments[0]].runs
+    # Averaged over the runs of a unit, a boolean is a number like others.
+    boolean = (
+        unit == "repeat"
+        and check.metric in metric_runs
+        and pd.api.types.is_bool_dtype(metric_runs[check.metric])
+    )
     comparison_list = []
     for condition, rows in _split(runs, every):
         unit_tables = {
@@ -144,12 +152,16 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
             comparison_list.append(
                 Contrast(
                     terms=terms,
-                    place=tuple((key, _replace_nan(rows[key].iloc[0])) for key in every),
+                    # NaN does not equal itself, so a text takes its place.
+                    place=tuple(
+                        (key, "nan" if (value := rows[key].iloc[0]) != value else value)
+                        for key in every
+                    ),
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
-                    boolean=_is_boolean(check, material),
+                    boolean=boolean,
                     paired=paired,
                     note=_note_success_rates(check, rows, column, cells),
                     conditions=int(pooled),
@@ -256,11 +268,6 @@ def find_mixed_factor(check: OfRuns, runs: pd.DataFrame) -> str:
     return next((factor for factor in factors if several[factor].nunique() > 1), "")
 
 
-def _replace_nan(value: Any) -> Any:
-    """Replace NaN in a place by the text `nan`, which equals itself."""
-    return "nan" if value != value else value
-
-
 def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yield the rows of each combination of values of the columns, with its name, sorted."""
     if not columns:
@@ -278,23 +285,6 @@ def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.Data
     if column is None:
         return rows.groupby(unit)["value"].mean().to_frame("")
     return rows.groupby([unit, column])["value"].mean().unstack(column)
-
-
-def _is_boolean(check: OfRuns, material: Material) -> bool:
-    """Return whether the metric is a boolean column, not averaged over the runs of a unit."""
-    runs = material.results[check.experiments[0]].runs
-    return (
-        check.replicate == "repeat"
-        and check.metric in runs
-        and pd.api.types.is_bool_dtype(runs[check.metric])
-    )
-
-
-def _has_shared_draws(check: OfRuns, material: Material) -> bool:
-    """Return whether units with the same number share a random workspace or a start."""
-    return "replicate" in check.model_fields_set or all(
-        material.study.paired.get(name, False) for name in check.experiments
-    )
 
 
 def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:

@@ -98,6 +98,7 @@ def _judge_variant(
     judgements, obstacle = _judge_checks(checks, claim, "/".join(key.values()), material)
     deciding = [entry for entry in judgements if entry.primary]
     decisive = None if obstacle else _select_decisive(deciding, claim.holds)
+    held = [held for _, held in map(_judge_printed, deciding) if held is not None]
     row = key | {
         "place": claim.place,
         "statement": claim.statement,
@@ -106,7 +107,7 @@ def _judge_variant(
         "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
         "timed": any(split_work(check)[0].timed for check in checks if check.primary),
-        "published": _count_published(deciding),
+        "published": f"{sum(held)} of {len(held)}" if held else "not printed",
     }
     if decisive:
         row |= _describe_verdict(claim, judgements, deciding, decisive, material)
@@ -281,12 +282,6 @@ def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     return float(
         effects.compute_effect(entry.check, entry.comparison.printed, entry.comparison.cells)
     ), held
-
-
-def _count_published(deciding: list[MarkedComparison]) -> str:
-    """Count in how many of the printed comparisons the sentence holds, in words."""
-    held = [held for _, held in map(_judge_printed, deciding) if held is not None]
-    return f"{sum(held)} of {len(held)}" if held else "not printed"
 
 
 # Rows.

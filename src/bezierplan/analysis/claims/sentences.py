@@ -5,12 +5,10 @@ where it holds, and notes. Files, page, site and reports say what is made here, 
 There is a template for each kind of test (`kinds`).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,13 +16,10 @@ from bezierplan.analysis.claims import variants
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
-from bezierplan.analysis.claims.kinds import share
+from bezierplan.analysis.claims.kinds import equal_within, function, share, trend
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.naming import format_amount, format_number, name_column
 from bezierplan.schema.model import convert_to_list, is_number
-
-if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import equal_within, function, trend
 
 Row = dict[str, Any]
 
@@ -367,6 +362,15 @@ def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: st
 # Where a claim holds
 
 
+class Entry(NamedTuple):
+    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
+    columns), and its mark.
+    """
+
+    factors: Mapping[str, Any]
+    mark: str
+
+
 def _list_factors(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> Entry:
     """List the factors that distinguish a comparison from the others of its claim, with
     its mark.
@@ -435,15 +439,6 @@ def note_disagreement(findings: Sequence[MarkedComparison]) -> str:
 def _build_key(entry: MarkedComparison) -> tuple:
     """Build the key of a comparison, the same whichever of those that it takes together decides."""
     return entry.place, len(entry.parts) or entry.terms
-
-
-class Entry(NamedTuple):
-    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
-    columns), and its mark.
-    """
-
-    factors: Mapping[str, Any]
-    mark: str
 
 
 def describe_split(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:

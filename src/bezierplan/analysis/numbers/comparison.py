@@ -329,11 +329,11 @@ def round_range(
         return low, high
     unit = 10.0**-decimals
     ends = (
-        end if math.isinf(end) else round(whole(end / unit) * unit, decimals)
+        end if math.isinf(end) else round(whole(end / unit + half) * unit, decimals)
         # Half a unit belongs to a printed number; 1e-9 of a unit is for rounding.
-        for end, whole in (
-            (low, lambda end: math.ceil(end - 0.5 - 1e-9)),
-            (high, lambda end: math.floor(end + 0.5 + 1e-9)),
+        for end, whole, half in (
+            (low, math.ceil, -0.5 - 1e-9),
+            (high, math.floor, 0.5 + 1e-9),
         )
     )
     return tuple(map(float, ends))
@@ -365,17 +365,10 @@ def format_range(number: Mapping[str, Any]) -> str:
 
 def is_possible(row: Mapping[str, Any], size: int | None) -> bool:
     """Return whether runs can have the published number, up to half a unit of its last digit."""
-    low, high = _find_limits(row["statistic"], (row["least"], row["most"]), size)
+    low, high, statistic = row["least"], row["most"], row["statistic"]
+    if statistic in ("std", "iqr", "range"):
+        low, high = 0.0, math.inf
+    elif statistic in ("count", "share"):
+        low, high = 0.0, 1.0 if statistic == "share" else size or math.inf
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
     return low - half <= row["value_published"] <= high + half
-
-
-def _find_limits(
-    statistic: str, single: tuple[float, float], size: int | None
-) -> tuple[float, float]:
-    """Find the range of a statistic of runs whose single values lie in a given range."""
-    if statistic in ("std", "iqr", "range"):
-        return 0.0, math.inf
-    if statistic in ("count", "share"):
-        return 0.0, 1.0 if statistic == "share" else size or math.inf
-    return single

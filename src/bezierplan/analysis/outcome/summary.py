@@ -73,7 +73,10 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
         listed = list(rows.iterrows())
         for (_, earlier), (index, row) in itertools.combinations(listed, 2):
             # The first table that prints a number keeps it.
-            if earlier["table"] != row["table"] and _is_same_place(earlier, row, keys):
+            if earlier["table"] != row["table"] and all(
+                pd.isna(one) or pd.isna(other) or one == other
+                for one, other in zip(earlier[keys], row[keys])
+            ):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
@@ -82,10 +85,3 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
         if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
             counted[numbers.index.get_loc(rows.index[-1])] = False
     return counted
-
-
-def _is_same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
-    """Return whether two rows have the same key columns as far as both have them."""
-    return all(
-        one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key]))
-    )

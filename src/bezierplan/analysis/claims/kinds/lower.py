@@ -125,8 +125,8 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     # A claimed least effect takes the place of the margin.
     if not least and abs(ours) < margin:
         toward = 0
-    (stratum, *others) = comparison.strata.values()
-    group, reference = effects.select_counted(stratum, comparison.paired)
+    (group, reference), *others = comparison.list_values()
+    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
     named = check.statistic
     # The tests below are for one condition, and for ranks, means or unshifted booleans.
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
@@ -134,15 +134,12 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     elif comparison.boolean:
         p = _compute_p_of_booleans(group, reference, comparison.paired)
     elif named == "mean":
-        p = _compute_p_of_means(
-            *_shift_other(check, *effects.select_finite(stratum, comparison.paired)),
-            comparison.paired,
-        )
+        ((group, reference),) = comparison.list_values(finite=True)
+        p = _compute_p_of_means(*_shift_other(check, group, reference), comparison.paired)
     else:
         p, ranked = compare_ranks(*_shift_other(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
-        toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
-    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
+        toward = side * ranked if infinite or toward == side * ranked else 0
     if not (math.isfinite(ours) or infinite):
         p = math.nan
     size_name, size = _compute_effect_size(check, comparison, side, ours)
@@ -170,13 +167,10 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
 
 def _is_constant(comparison: Contrast) -> bool:
     """Return whether each cell has one and the same number in all its units, in every condition."""
-    cells = [
-        values
-        for stratum in comparison.strata.values()
-        for values in effects.select_counted(stratum, comparison.paired)
-    ]
     return not comparison.boolean and all(
-        np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
+        np.isfinite(values).all() and np.ptp(values) == 0
+        for cells in comparison.list_values()
+        for values in cells
     )
 
 
@@ -235,9 +229,7 @@ def _compute_effect_size(
     """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
     the claimed direction; or the difference itself.
     """
-    pairs = [
-        effects.select_counted(stratum, comparison.paired) for stratum in comparison.strata.values()
-    ]
+    pairs = comparison.list_values()
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs
         if comparison.paired:
