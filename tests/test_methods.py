@@ -11,6 +11,7 @@ from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.results import Results
 from bezierplan.geometry.tightest_turn import largest_curvature
+from bezierplan.study.experiments import FamilyEntry
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -58,8 +59,8 @@ def rows():
     problems = {each.name: each for each in (BLOCKED, FREE)}
     results = Results(pd.DataFrame(runs), problems, pd.DataFrame())
     families = {
-        "in the way": methods.Family("field", straight="blocked"),
-        "one": methods.Family("field", ["free"]),
+        "in the way": FamilyEntry(experiment="field", straight="blocked"),
+        "one": FamilyEntry(experiment="field", problems=["free"]),
     }
     return methods.measure_studies({"mine": "curved"}, {"mine": families}, {"mine/field": results})
 

@@ -343,8 +343,8 @@ class MethodsTable(Job):
 
     proposed: dict[str, str | None]
     """By study, the method that its paper proposes."""
-    families: dict[str, dict[str, dict[str, Any]]]
-    """By study: what the study declares."""
+    families: dict[str, dict[str, Any]]
+    """By study: the families that it declares (`study.experiments.FamilyEntry`)."""
     repeats: dict[str, int]
     """By study/experiment."""
     problems: dict[str, list[str]]
@@ -364,11 +364,7 @@ class MethodsTable(Job):
             every = results.read(files[place], number, place.partition("/")[2])
             runs = results.select(every.runs, {"problem": self.problems[place]})
             by_place[place] = every._replace(runs=runs)
-        families = {
-            study: {name: methods.Family(**each) for name, each in own.items()}
-            for study, own in self.families.items()
-        }
-        table = methods.measure_studies(self.proposed, families, by_place)
+        table = methods.measure_studies(self.proposed, self.families, by_place)
         table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 

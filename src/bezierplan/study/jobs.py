@@ -387,7 +387,7 @@ def build_methods(studies: Studies, scale: str) -> MethodsTable:
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
-        proposed[key], families[key] = beside.proposed, beside.plain().get("families", {})
+        proposed[key], families[key] = beside.proposed, beside.families
         for name in beside.experiments:
             methods = [*study.experiments[name].methods, beside.baseline]
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]

@@ -299,8 +299,6 @@ def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, c
         return ""
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
-    if not any(failed for _, failed in counts):
-        return ""  # both always succeed
     from scipy import stats
 
     return (

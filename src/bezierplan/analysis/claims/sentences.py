@@ -285,8 +285,7 @@ _TEMPLATES = {
 def _name_quantity(row: Row) -> str:
     """Name the quantity that is measured, with its statistic: `exact arc length (mean)`."""
     statistic = row["statistic"]
-    metric = row["metric"] or ""
-    measured = describe_metric(metric).partition(";")[0] or metric.replace("_", " ")
+    measured = METRICS[row["metric"] or ""].meaning.partition(";")[0]
     return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
 
 

@@ -1,8 +1,8 @@
 """Results of each method on each problem, and their summary by families of problems."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -29,27 +29,7 @@ _STRAIGHT = 1e-9
 _EQUAL, _TIGHTER = 1e-6, 1.03
 
 
-class Family(NamedTuple):
-    """The problems of an experiment that belong together. problems: their names, all if empty.
-    straight: `free` or `blocked` for those whose straight line is, or None for both.
-    """
-
-    experiment: str
-    problems: Sequence[str] = ()
-    straight: str | None = None
-
-    def has(self, experiment: str, problem: str, straight: bool) -> bool:
-        """Return whether a problem is one of the family."""
-        return (
-            self.experiment == experiment
-            and (not self.problems or problem in self.problems)
-            and self.straight in (None, "free" if straight else "blocked")
-        )
-
-
-def measure_methods(
-    experiment: str, results: Results, families: Mapping[str, Family]
-) -> pd.DataFrame:
+def measure_methods(experiment: str, results: Results, families: Mapping[str, Any]) -> pd.DataFrame:
     """Measure each method on each problem of an experiment, a row each: the columns of
     `methods.csv` but for study and proposed.
     """
@@ -65,14 +45,14 @@ def _list_rows(
     experiment: str,
     runs: pd.DataFrame,
     problems: Mapping[str, Problem],
-    families: Mapping[str, Family],
+    families: Mapping[str, Any],
 ) -> Iterator[dict[str, Any]]:
     """Yield the row of each method on each problem."""
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
-        kin = (key for key, kind in families.items() if kind.has(experiment, name, straight))
-        family = next(kin, "")
+        own = (key for key, each in families.items() if each.has(experiment, name, straight))
+        family = next(own, "")
         names = {"experiment": experiment, "family": family, "problem": name}
         for method, of_method in of_problem.groupby("method", sort=False):
             free = of_method[of_method["free"]]
@@ -119,11 +99,13 @@ def _measure_turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict
 
 def measure_studies(
     proposed: Mapping[str, str | None],
-    families: Mapping[str, Mapping[str, Family]],
+    families: Mapping[str, Mapping[str, Any]],
     experiments: Mapping[str, Results],
 ) -> pd.DataFrame:
     """Measure the methods of all experiments, each `study/experiment`; return the rows of
-    `methods.csv`. proposed, families: by study.
+    `methods.csv`.
+
+    proposed, families: by study, as it declares them (`study.experiments.FamilyEntry`).
     """
     tables = []
     for place, results in experiments.items():
