@@ -36,8 +36,3 @@ OTHER = Word("", "open", "", "", "open", "·", "", "")
 def select_words(what: str) -> dict[str, Word]:
     """Select the positions of numbers, or the verdicts on claims. what: `number` or `claim`."""
     return {name: word for name, word in WORDS.items() if word.on == what}
-
-
-def list_groups(what: str) -> dict[str, str]:
-    """List the group in which each position or verdict counts. what: `number` or `claim`."""
-    return {name: word.group for name, word in select_words(what).items()}

@@ -11,8 +11,6 @@ from functools import partial
 import numpy as np
 
 DRAWS = 10_000
-# Evenly spaced chances, whose quantiles stand for as many draws.
-_CHANCES = (np.arange(DRAWS) + 0.5) / DRAWS
 # Share of a distribution that lies beyond either end of its central 95 %.
 TAIL = 0.025
 # With fewer runs, the central 95 % is meaningless, and no published number is judged.
@@ -171,7 +169,7 @@ def compute_normal_draws(centre: float, error: float) -> np.ndarray:
     """
     from scipy.special import ndtri
 
-    return centre + error * ndtri(_CHANCES)
+    return centre + error * ndtri((np.arange(DRAWS) + 0.5) / DRAWS)
 
 
 def _is_normal(name: str, values: np.ndarray) -> bool:
@@ -376,7 +374,7 @@ def _draw_stds(values: np.ndarray, size: int) -> np.ndarray:
     )
     # Of our sample and of the paper's; a small sample can give a negative estimate.
     variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
-    logarithms = 0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, _CHANCES)
+    logarithms = 0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS)
     with np.errstate(over="ignore"):  # of two or three values the largest are infinite
         return spread * np.exp(logarithms)
 
@@ -420,5 +418,5 @@ def _draw_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray
     ends = np.concatenate([[-np.inf], np.sort(values), [np.inf]])
     # Probability that more than 0, 1, ... of ours lie below the least of the others.
     beyond = np.cumprod(np.arange(len(values), 0, -1) / np.arange(len(values) + size, size, -1))
-    gaps = np.searchsorted(-beyond, -_CHANCES)
+    gaps = np.searchsorted(-beyond, -(np.arange(DRAWS) + 0.5) / DRAWS)
     return ends[gaps], ends[gaps + 1]

@@ -142,7 +142,7 @@ def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
     return worst_first.drop(columns="frees").reset_index()
 
 
-def format_table(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
     """Format the rows of `group_by_family` as words; the index is the method.
 
     labels: name -> how it is printed; a name of several studies stands after `study/`.

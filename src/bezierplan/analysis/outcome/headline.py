@@ -2,6 +2,8 @@
 run show the same.
 """
 
+from collections import Counter
+
 import pandas as pd
 
 from bezierplan.analysis import legend, naming
@@ -38,10 +40,7 @@ def describe_claims(claims: pd.DataFrame) -> str:
     claims = claims[claims["primary"].astype(bool) & ~claims["finding"].astype(bool)]
     if claims.empty:
         return ""
-    groups = legend.list_groups("claim")
-    counts = claims["verdict"].map(groups).value_counts().reindex([*groups.values()], fill_value=0)
-    # A group of several verdicts stands there once for each.
-    counts = counts[~counts.index.duplicated()]
+    counts = Counter(legend.WORDS[verdict].group for verdict in claims["verdict"])
     return (
         f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "
         f"hold in part, {counts['fail']} fail, and {counts['open']} cannot be decided."
