@@ -36,7 +36,7 @@ from bezierplan.study import published
 from bezierplan.study.alternatives import apply_values, is_judged
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
-from bezierplan.study.design import Design, build_design, join_designs
+from bezierplan.study.design import build_design, join_designs
 from bezierplan.study.experiments import Experiment, Method, ProblemEntry, build_descriptions
 from bezierplan.study.jobs import build_chunk
 from bezierplan.workspaces import files
@@ -68,7 +68,12 @@ class Checks:
         self.words, self.broken_files = {"generation"}, set()
         self._place = ()
         self.design = cache(lambda experiment: build_design(self.study, experiment))
-        self.runs = cache(self._join_runs)
+        # The planned runs of experiments; for a claim, without those of baselines.
+        self.runs = cache(
+            lambda experiments, claim: join_designs(
+                [*map(self.design, experiments)], study.baselines if claim else ()
+            )
+        )
         self.build_problem = cache(self._build_problem)
         self.known = {
             "experiment": [*study.experiments],
@@ -387,12 +392,6 @@ class Checks:
                 self.check_name_in_runs(tuple(experiments), claim, what, name, key)
             if what in ("function", "world") and len(path) == 1:
                 self.check_arguments(self.known[what][name], getattr(model, "arguments", {}))
-
-    def _join_runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
-        """Return the planned runs of experiments; for a claim, without those of baselines."""
-        return join_designs(
-            [self.design(each) for each in experiments], self.study.baselines if claim else ()
-        )
 
     def check_name_in_runs(
         self, experiments: tuple[str, ...], claim: bool, what: str, name: Any, key: str

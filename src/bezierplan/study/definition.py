@@ -29,6 +29,9 @@ class Study(Experiments, ArtefactsFile):
     values: Mapping[str, Any] = {}
     """Assumption id -> value in place of the default (`alternatives.apply_values`)."""
 
+    # What follows from a study is kept by the study itself, whose fields are no keys of a mapping.
+    __hash__ = object.__hash__
+
     def list_governed_methods(self, assumption: AssumptionEntry) -> list[str]:
         """Return the methods whose setting an assumption governs: those that it names, otherwise
         all except baselines and variants.

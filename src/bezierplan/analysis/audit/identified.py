@@ -262,31 +262,23 @@ def _trace_paths(
     """Trace the matching polylines with fewest edges backwards from their ends; return the places
     of their cells.
     """
+
+    def extend(left: int, path: tuple[int, ...], length: float) -> Iterator[tuple[int, ...]]:
+        """Extend a path, given from its end, in all ways that leave the rest of its length
+        reachable with `left` more edges.
+        """
+        if not left:
+            yield path[::-1]
+            return
+        for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
+            rest = length - ways.lengths[path[-1], other]
+            if _is_near(levels[left - 1][other], rest, half).any():
+                yield from extend(left - 1, (*path, int(other)), rest)
+
     for edges in range(1, len(levels)):
         if _is_near(levels[edges][last], printed, half).any():
-            walks = _extend_path(ways, levels, edges, (last,), printed, half)
-            return list(itertools.islice(walks, MOST_PATHS))
+            return list(itertools.islice(extend(edges, (last,), printed), MOST_PATHS))
     return []
-
-
-def _extend_path(
-    ways: Ways,
-    levels: list[list[np.ndarray]],
-    left: int,
-    path: tuple[int, ...],
-    length: float,
-    half: float,
-) -> Iterator[tuple[int, ...]]:
-    """Extend a path, given from its end, in all ways that leave the rest of its length reachable
-    with `left` more edges.
-    """
-    if not left:
-        yield path[::-1]
-        return
-    for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
-        rest = length - ways.lengths[path[-1], other]
-        if _is_near(levels[left - 1][other], rest, half).any():
-            yield from _extend_path(ways, levels, left - 1, (*path, int(other)), rest, half)
 
 
 def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
@@ -297,9 +289,8 @@ def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
 
 def _compute_chance(lengths: np.ndarray, printed: float, half: float) -> float:
     """Compute the share of the printed numbers within `NEARBY` to which some length rounds."""
-    numbers = printed + 2 * half * np.arange(
-        -round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1
-    )
+    count = round(NEARBY / (2 * half))
+    numbers = printed + 2 * half * np.arange(-count, count + 1)
     at = np.searchsorted(lengths, numbers)
     padded = np.concatenate([[-np.inf], lengths, [np.inf]])
     return float(np.mean(np.minimum(numbers - padded[at], padded[at + 1] - numbers) <= half + 1e-7))

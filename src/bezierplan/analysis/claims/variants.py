@@ -78,4 +78,4 @@ def split_work(check: ClaimCheck) -> list[ClaimCheck]:
     """
     if not isinstance(check, OfRuns) or check.work is None:
         return [check]
-    return [check.use_work(), check.report_only()]
+    return [check.use_work(), check.but(secondary=True)]

@@ -261,10 +261,12 @@ def _find_wide(
             wide.append(None)
             continue
         # A variant's own name is in no published row; its number is that of its published method.
-        own = {key: row["printed_method" if key == "method" else key] for key in key_columns}
+        own = pd.Series(
+            {key: row["printed_method" if key == "method" else key] for key in key_columns}
+        )
         same = alike[row["metric"], row["statistic"]]
-        others = same[(same[key_columns] != pd.Series(own)).any(axis=1)]
-        here = others[(others[places] == pd.Series(own)[places]).all(axis=1)]
+        others = same[(same[key_columns] != own).any(axis=1)]
+        here = others[(others[places] == own[places]).all(axis=1)]
         values = (others if here.empty else here)["value"].astype(float)
         held = values.between(row["low95_predicted"], row["high95_predicted"])
         wide.append(bool(held.mean() >= WIDE))
