@@ -27,7 +27,7 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 TABLES = ("numbers.csv", "claims.csv", "methods.csv")
-CHECKS, WHOLES, TEXTS = "claim_checks.csv", "wholes.csv", "texts.csv"
+CHECKS, ORDERS, TEXTS = "claim_checks.csv", "order_and_level.csv", "texts.csv"
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
@@ -116,7 +116,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
-    for name in ("numbers.csv", "methods.csv", WHOLES):
+    for name in ("numbers.csv", "methods.csv", ORDERS):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in studies:

@@ -180,7 +180,7 @@ class Recheck(Job):
 @dataclass(frozen=True)
 class TableOfRuns(Job):
     """The job that makes a table of runs, and compares it with published numbers, one by one and as
-    wholes.
+    columns.
     """
 
     name: str
@@ -233,7 +233,7 @@ class TableOfRuns(Job):
             columns = order_and_level.compare_columns(
                 runs, self.spec, compared, self.name, self.paired
             )
-            self.write(columns, output_files.wholes)
+            self.write(columns, output_files.order_and_level)
         self.write(compared, output_files.comparison)
 
 
@@ -383,7 +383,7 @@ class Summary(Job):
         study_code.load_functions(self.code)
         summed = summary.gather(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
-            list(input_files.wholes),
+            list(input_files.order_and_level),
             list(input_files.claims),
         )
         for name, table in summed.items():

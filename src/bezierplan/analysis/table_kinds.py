@@ -175,7 +175,7 @@ class Pivot(TableEntry):
         description="published lengths on grids that may be those of free polylines through cell "
         "centres from start to target, to the last digit, or of straight and diagonal moves, to "
         "the decimals of `diagonal`, which the audit enumerates: {metric, because}, and perhaps "
-        "`statistic`, `where`, `edges`, `diagonal` and `counts`",
+        "`statistic`, `where`, `edges` and `diagonal`",
     )
     primary: Where = Field(
         {},

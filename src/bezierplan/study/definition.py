@@ -90,7 +90,7 @@ class Study(Experiments, ArtefactsFile):
         if name in self.find_tables_of_runs():
             endings.append("comparison.csv")
         if name in self.find_published_tables():
-            endings += ["published.csv", "wholes.csv"]
+            endings += ["published.csv", "order_and_level.csv"]
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
     def find_tables_of_runs(self) -> dict[str, Pivot]:

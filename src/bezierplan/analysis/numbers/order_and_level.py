@@ -49,11 +49,12 @@ def compare_columns(
             if len(group) >= LEAST:
                 where = dict(zip(column, values))
                 told = [*name.split("/"), json.dumps(where), metric, len(group)]
-                same = dict(zip(COLUMNS_OF["wholes"], told))
+                same = dict(zip(COLUMNS_OF["order_and_level"], told))
                 together = paired or bool((group["draws"] > 1).all())
+                # The file was once named wholes: its name seeds the draws, so it stays.
                 rng = generator(f"{name}/{describe_cell(where, where)}/{metric}/wholes")
                 rows += [same | row for row in _compare_column(group, together, rng)]
-    return pd.DataFrame(rows, columns=COLUMNS_OF["wholes"])
+    return pd.DataFrame(rows, columns=COLUMNS_OF["order_and_level"])
 
 
 def draw_means(

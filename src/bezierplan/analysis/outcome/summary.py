@@ -13,13 +13,13 @@ from bezierplan.analysis.numbers import comparison
 
 def gather(
     comparison_files: Mapping[tuple[str, str], str],
-    wholes_files: list[str],
+    column_files: list[str],
     claims_files: list[str],
 ) -> dict[str, pd.DataFrame]:
-    """Gather the tables of all studies by name: `numbers`, `claims`, and `wholes`, columns of
-    numbers.
+    """Gather the tables of all studies by name: `numbers`, `claims`, and `order_and_level` of
+    columns of numbers.
 
-    comparison_files: by study and table. wholes_files: of the same tables. claims_files: of the
+    comparison_files: by study and table. column_files: of the same tables. claims_files: of the
     studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
@@ -29,7 +29,7 @@ def gather(
             {name: pd.read_csv(file) for name, file in comparison_files.items()}
         ),
         "claims": pd.concat(claims, ignore_index=True) if claims else none,
-        "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
+        "order_and_level": pd.concat(map(pd.read_csv, column_files), ignore_index=True),
     }
 
 
