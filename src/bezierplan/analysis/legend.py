@@ -25,6 +25,7 @@ class Word(NamedTuple):
     meaning: str
 
 
+# Without pandas, because captions need the words at every start of the workflow.
 with Path(__file__).with_suffix(".csv").open(encoding="utf-8", newline="") as rows:
     WORDS = {row.pop("word"): Word(**row) for row in csv.DictReader(rows)}
 """In the order in which they are counted and explained."""

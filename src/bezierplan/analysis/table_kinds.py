@@ -244,6 +244,7 @@ class FunctionTable(TableEntry):
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
+# In the order in which config/README.md lists the kinds.
 TABLES = {
     model.model_fields["kind"].annotation.__args__[0]: model
     for model in TableEntry.__subclasses__()

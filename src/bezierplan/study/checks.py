@@ -234,6 +234,7 @@ class Checks:
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
         used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
+        # Only now, since what a planner accepts is known once its file has been checked.
         self.known["setting"] = used
         if not self.complete:
             return

@@ -317,6 +317,7 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
     own, other = (
         build_problems_job(each, experiment, scale).workspaces for each in (study, default)
     )
+    # A reading has fewer problems than the default, so its workspaces are some of these.
     alike = own.items() <= other.items()
     if not method or not alike:
         return alike

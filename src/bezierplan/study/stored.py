@@ -154,6 +154,7 @@ def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str
     below = [place for place in places if (folder / place).is_dir()]
     job_of = {
         file: job
+        # The later jobs win: files above the studies are those of the studies on the page.
         for studies in (places, on_page)
         for job, job_files in yield_jobs(studies, scale, below, root)
         for file in job_files

@@ -58,6 +58,7 @@ def add_dependence(
     claims = claims.assign(readings="")
     primary, decided = claims["primary"].astype(bool), claims["verdict"].isin(SIDES)
     for index, claim in claims[primary].iterrows():
+        # A reading judges the claims that it names, or the main ones, not all.
         own = {name: each[claim["id"]] for name, each in under.items() if claim["id"] in each}
         claims.loc[index, "readings"] = "; ".join(
             f"{verdict} under {', '.join(name for name in own if own[name] == verdict)}"

@@ -76,6 +76,7 @@ def judge_claims(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
             row, details = _judge_variant(claim, first, assignment, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
+    # Int64, because a column of whole numbers with gaps would be written as decimals.
     claims = pd.DataFrame(claim_rows, columns=COLUMNS_OF["claims"]).astype({"n": "Int64"})
     checks = pd.DataFrame(check_rows, columns=COLUMNS_OF["claim_checks"])
     return claims, checks.astype({"together": "Int64", "conditions": "Int64"})

@@ -124,6 +124,7 @@ def compare(
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
+    # Written as whole numbers and flags, also where cells are empty.
     whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
     marks = ("wide", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))

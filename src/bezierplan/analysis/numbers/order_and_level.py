@@ -69,6 +69,7 @@ def draw_means(
     if together:
         # One table, so that a repeat is drawn with the runs of all methods.
         parts = [pd.concat(parts, axis=1, join="inner")]
+    # Where the paper does not state its number of runs, single runs are compared, as in each cell.
     size = min(int(group["n_published"].fillna(1).min()), statistics.MOST_PREDICTED)
     means = []
     for values in (part.to_numpy().reshape(len(part), -1) for part in parts):

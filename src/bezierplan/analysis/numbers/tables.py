@@ -177,6 +177,7 @@ def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> p
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
     ordered = order_keys(groups, spec, problems)
     ordered["statistic"] = pd.Categorical(groups["statistic"], categories=list(order), ordered=True)
+    # Numbers of the combinations that occur, in the order of the categories.
     rows, columns = (
         ordered.groupby(levels, dropna=False, observed=True).ngroup()
         for levels in _list_levels(spec)

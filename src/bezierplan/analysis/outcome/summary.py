@@ -23,6 +23,7 @@ def gather(
     studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
+    # Readers select by these columns, which without a row would be of no type.
     none = pd.DataFrame(columns=COLUMNS_OF["claims"]).astype({"primary": bool, "finding": bool})
     return {
         "numbers": list_numbers(

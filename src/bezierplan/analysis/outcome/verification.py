@@ -160,6 +160,7 @@ def _make_again(files: list[Path], config: dict[str, Any], away: str, processes:
         [
             *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
             *("--cores", str(processes), "--nolock", "--drop-metadata", "--keep-going"),
+            # A profile might send the jobs to a cluster, from where the copies cannot be seen.
             *("--workflow-profile", "none", "--scheduler", "greedy"),
             *("--allowed-rules", *_RULES, "--"),
             *files,

@@ -140,6 +140,7 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
         p, ranked = compare_ranks(*_shift_other(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
         toward = side * ranked if infinite or toward == side * ranked else 0
+    # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
     if not (math.isfinite(ours) or infinite):
         p = math.nan
     size_name, size = _compute_effect_size(check, comparison, side, ours)
