@@ -252,11 +252,20 @@ def build_latex(study: Study, scale: str, table: str) -> Latex:
 def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     """Build the job that draws a figure."""
     spec, behind = study.figures[figure], list_methods(study, figure)
-    methods = {method for name in behind for method in study.methods_of(name)}
-    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
     every = study.every_problem() if spec.problems else {}
     problems = build_descriptions(study, {name: every[name] for name in spec.problems})
-    homes += problems.workspaces
+    maps = [*spec.workspaces, *problems.workspaces]
+    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
+    # Of a figure without runs and maps, any workspace has the unit.
+    unit = study.workspaces[[*homes, *maps, *study.workspaces][0]].unit
+    methods = {method for name in behind for method in study.methods_of(name)}
+    looks = choose_looks(study).items()
+    # Only some panels repeat runs, such as tracks; others read the stored ones.
+    again = {
+        name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
+        for name in spec.rerun
+    }
+    published = [file for file in study.list_published_files() if spec.draws(Path(file).stem)]
     return FigureFiles(
         study=study.key,
         caption=build_caption(study, figure, scale).write(),
@@ -265,26 +274,15 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
         panels=spec.panels,
         layout=study.layout.get(figure),
         labels=build_labels(study, figure),
-        looks={
-            name: look
-            for name, look in choose_looks(study).items()
-            if spec.names_any or name in methods
-        },
+        looks={name: look for name, look in looks if spec.names_any or name in methods},
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
         problems=problems,
         repeats={name: study.experiments[name].repeats[scale] for name in behind},
-        chunks={
-            name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
-            # Only some panels repeat runs, such as tracks; others read the stored ones.
-            for name in spec.rerun
-        },
-        unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
+        chunks=again,
+        unit=unit,
         folder=shorten_path(study.folder),
         alternatives=_list_alternatives(study) if spec.claims else [],
-        sources=[
-            *study.maps([*spec.workspaces, *problems.workspaces]),
-            *(file for file in study.list_published_files() if spec.draws(Path(file).stem)),
-        ],
+        sources=[*study.maps(maps), *published],
         shows=find_results(study, figure, scale),
         code=study.code_for(*spec.code),
     )
