@@ -110,11 +110,6 @@ class ClaimCheck(Model):
         return not self.secondary
 
     @property
-    def statistic_shown(self) -> str:
-        """Return the statistic that is compared; empty for a kind without a choice."""
-        return self.statistic or "rank" if "statistic" in type(self).model_fields else ""
-
-    @property
     def timed(self) -> bool:
         """Return whether its metric is in seconds."""
         return METRICS[self.metric or ""].unit == "s"

@@ -227,13 +227,6 @@ def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarra
         return load_kind(check).EFFECT.of(check, points, cells)
 
 
-def compute_our_effect(check: OfRuns, comparison: Contrast) -> float:
-    """Compute the effect of the statistic of our values."""
-    return float(
-        compute_effect(check, compute_points(comparison, choose_statistic(check)), comparison.cells)
-    )
-
-
 def is_as_claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Return whether an effect is as the claim says, by its value alone."""
     return load_kind(check).EFFECT.holds(check, effects, margin)
@@ -368,7 +361,9 @@ def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Find
     """Measure the effect of two cells, and return it with its draws. The finding has a mark where
     no test follows: there are too few units, or the sentence is about extremes.
     """
-    ours, n = compute_our_effect(check, comparison), count_units(comparison)
+    points = compute_points(comparison, choose_statistic(check))
+    ours = float(compute_effect(check, points, comparison.cells))
+    n = count_units(comparison)
     if reason := explain_too_few(comparison):
         return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
     margin = compute_margin(check, comparison)

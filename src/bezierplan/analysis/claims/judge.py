@@ -310,7 +310,10 @@ def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
             "test": check.test,
             "experiments": ", ".join(check.experiments),
             "metric": check.metric,
-            "statistic": check.statistic_shown,
+            # A kind without a choice of statistics has none to show.
+            "statistic": (check.statistic or "rank")
+            if "statistic" in type(check).model_fields
+            else "",
             "unit": _find_unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,

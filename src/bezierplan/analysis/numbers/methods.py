@@ -29,25 +29,18 @@ _STRAIGHT = 1e-9
 _EQUAL, _TIGHTER = 1e-6, 1.03
 
 
-def measure_methods(experiment: str, results: Results, families: Mapping[str, Any]) -> pd.DataFrame:
-    """Measure each method on each problem of an experiment, a row each: the columns of
-    `methods.csv` but for study and proposed.
+def _measure_methods(
+    experiment: str, results: Results, families: Mapping[str, Any]
+) -> Iterator[dict[str, Any]]:
+    """Yield the row of each method on each problem of an experiment: the columns of `methods.csv`
+    but for study and proposed.
     """
+    problems = results.problems
     runs = results.runs.assign(
         free=results.runs["feasible"].astype(bool),
-        gap=metrics.compute_values(results.runs, "gap", results.problems),
-        corners=metrics.compute_values(results.runs, "corners", results.problems),
+        gap=metrics.compute_values(results.runs, "gap", problems),
+        corners=metrics.compute_values(results.runs, "corners", problems),
     )
-    return pd.DataFrame(_list_rows(experiment, runs, results.problems, families))
-
-
-def _list_rows(
-    experiment: str,
-    runs: pd.DataFrame,
-    problems: Mapping[str, Problem],
-    families: Mapping[str, Any],
-) -> Iterator[dict[str, Any]]:
-    """Yield the row of each method on each problem."""
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
@@ -110,7 +103,7 @@ def measure_studies(
     tables = []
     for place, results in experiments.items():
         study, _, name = place.partition("/")
-        rows = measure_methods(name, results, families[study])
+        rows = pd.DataFrame(_measure_methods(name, results, families[study]))
         tables.append(rows.assign(study=study, proposed=rows["method"] == proposed[study]))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS_OF["methods"])
