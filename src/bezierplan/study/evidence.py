@@ -71,6 +71,7 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
     for name, problem in study.problems.items():
         settings[f"problem {name}"] = problem.plain()
     for name, experiment in study.experiments.items():
+        # How many runs one job makes, and when one is given up, changes no run.
         settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
     settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
     settings["presets"] = study.presets

@@ -133,6 +133,7 @@ def build_verification(
     accounts = [
         (own, job.key, job.account)
         for job, own in yield_jobs(places, scale, below, root)
+        # The page holds the digest of the list, so it is no file of the list; its account is.
         if own == [PAGE] or not {*own}.isdisjoint(files)
     ]
     words = {

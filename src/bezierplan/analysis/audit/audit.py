@@ -283,6 +283,7 @@ def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         column for column in every if column not in ("statistic", "value", "as_printed", "unit")
     ]
     for n, own in every.groupby("n"):
+        # As text, because a pivot would lose rows in which a key is empty.
         filled = own.astype(dict.fromkeys(keys, str))
         wide = filled.pivot_table("value", keys, "statistic")
         wide = wide.reindex(columns=["min", "mean", "max"]).dropna()

@@ -134,6 +134,7 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     apart = [round(abs(b - a) / cell) for a, b in zip(problem.start, problem.target)]
     places = possible.count_decimals(str(diagonal))
     unit, value = 10.0**-places, value / cell
+    # A quotient of decimals may lie just below the whole number that it stands for.
     printed = math.floor(value / unit + _ROUNDING) * unit
     most = int(value + NEARBY) + 1
     moves = [

@@ -99,6 +99,7 @@ def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) ->
         compared = checks[checks["primary"].astype(bool)].merge(first, on=["id", "variant"])
         for (claim, _), own in compared.groupby(["id", "check"], sort=False):
             marks, in_family = own["mark"].to_list(), own["mark_family"].to_list()
+            # The first of those that speak most against the claim, in the order of the checks.
             against = own.iloc[min(range(len(own)), key=lambda row: AGAINST.index(marks[row]))]
             rows.append(
                 against.to_dict()

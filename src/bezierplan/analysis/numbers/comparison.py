@@ -99,6 +99,7 @@ def compare(
         spec = spec.but(where=spec.where | {"method": methods + beside})
     ours = tables.compute_cells(results, spec, keys, beside)
     ours = tables.place_cells(ours, spec, list(results.problems))
+    # Before the join, while all ranks of the printed table stand together.
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
     both = _join_published(ours, marked, key_columns, variant_of)
     # The outer join sorts rows by name; the table has an order of its own.

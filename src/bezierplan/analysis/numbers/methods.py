@@ -122,6 +122,7 @@ def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
     both = known["rounded"].notna()
     shorter = known["excess"] < known["rounded"] - _EQUAL
     smoother = known["curvature"] * _TIGHTER < known["rounded_curvature"]
+    # Shares are weighted by runs, of which problems may have different numbers.
     known = known.assign(
         frees=known["free"] * known["runs"], both=both, adds=both & (shorter | smoother)
     )
