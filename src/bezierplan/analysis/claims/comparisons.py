@@ -196,8 +196,14 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
             runs = select(runs, conditions)
         if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
             raise Untestable(f"the runs of {name} have no {check.metric}")
-        counting = _select_groups(runs, check)
-        counting = _pick_runs(counting, check.pick.plain()) if check.pick else counting
+        counting = runs
+        # Runs that a metric ranks among each other need those of all groups.
+        if check.groups_named and not metrics.METRICS[check.metric].among_rows:
+            counting = runs[runs[check.cells].isin(check.groups_named)]
+        if check.pick:
+            of_method = counting.groupby(_FACTORS)
+            picked = [pick(own, check.pick.plain()) for _, own in of_method]
+            counting = counting.loc[[run.name for run in picked if run is not None]]
         values = metrics.compute_values(counting, check.metric, problems).fillna(
             _choose_failure_value(check)
         )
@@ -216,26 +222,6 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
         # A share counts each run once.
         frames.append(runs if check.cells else runs[~is_repeated(runs)])
     return pd.concat(frames, ignore_index=True)
-
-
-def _select_groups(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
-    """Select the runs of the groups that a check names; all runs for a metric that ranks them among
-    each other.
-    """
-    groups = check.groups_named
-    return (
-        runs[runs[check.cells].isin(groups)]
-        if groups and not metrics.METRICS[check.metric].among_rows
-        else runs
-    )
-
-
-def _pick_runs(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
-    """Pick one run of each condition and method that has a feasible one."""
-    chosen = [
-        pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])
-    ]
-    return runs.loc[[run.name for run in chosen if run is not None]]
 
 
 def _choose_failure_value(check: OfRuns) -> float:
