@@ -1,5 +1,5 @@
 """The content of the site: tables and figures of a scale, which mirror the papers', and as evidence
-the numbers, verdicts, reasons and wholes of many runs that docs/outcome keeps.
+the numbers, verdicts, reasons, orders and levels of many runs that docs/outcome keeps.
 """
 
 import base64

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezierplan.analysis.outcome.headline import compute_deviations
+from bezierplan.analysis.numbers import comparison
 from bezierplan.figures import style
 
 FAR = 3.0
@@ -148,6 +148,22 @@ def _write(axes: Axes, x: float, y: float, text: str, align: str, **look: str) -
     """Write beside the strips: x as a share of their width, y in inches."""
     place = axes.get_yaxis_transform()
     axes.text(x, y, text, ha=align, va="center", transform=place, clip_on=False, **look)
+
+
+def compute_deviations(numbers: pd.DataFrame) -> np.ndarray:
+    """Compute |ours - published| / |published| of numbers, infinite beside a 0.
+
+    Ours are scaled to the paper's number of runs. Quantities that the paper does not define say
+    nothing, and are left out.
+    """
+    numbers = numbers[numbers["reason"] != comparison.UNDEFINED]
+    published, ours = (
+        numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
+    )
+    off = np.abs(ours - published)
+    return np.divide(
+        off, np.abs(published), out=np.where(off > 0, np.inf, 0.0), where=published != 0
+    )
 
 
 def save(numbers: pd.DataFrame, names: Mapping[str, str], folder: Path) -> None:

@@ -11,11 +11,11 @@ import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import facts
 import numbers_picture
 import pandas as pd
 
 from bezierplan.analysis import naming
-from bezierplan.analysis.markdown import write_table
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
@@ -27,7 +27,7 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 TABLES = ("numbers.csv", "claims.csv", "methods.csv")
-CHECKS, WHOLES, TEXTS = "claim_checks.csv", "wholes.csv", "texts.csv"
+CHECKS, ORDERS, TEXTS = "claim_checks.csv", "order_and_level.csv", "texts.csv"
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
@@ -101,10 +101,10 @@ def main() -> None:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
 
-def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, texts.FilledText]:
+def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, facts.FilledText]:
     """Return the answer to each paper from the tables of a folder. files: by study, if any."""
     return {
-        key: texts.fill(texts.read(file), texts.read_outcome_tables(folder, key))
+        key: facts.fill(texts.read(file), facts.read_outcome_tables(folder, key))
         for key, file in files.items()
         if file
     }
@@ -116,7 +116,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
-    for name in ("numbers.csv", "methods.csv", WHOLES):
+    for name in ("numbers.csv", "methods.csv", ORDERS):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in studies:
@@ -132,7 +132,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
 
 def build_paper_page(
     title: str,
-    answer: texts.FilledText,
+    answer: facts.FilledText,
     claims: pd.DataFrame,
     folder: Path,
     tables: Mapping[str, tuple[str, int]],
@@ -214,13 +214,28 @@ def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
     )
     said = f"{headline.describe_numbers(numbers)} {headline.describe_claims(claims)}"
     parts = [
-        f"**{OPEN} {headline.describe_methods(of_problems)}**",
+        f"**{OPEN} {describe_methods(of_problems)}**",
         listed,
         PICTURE,
         f"*{said} {RANGE}*",
         build_methods_table(of_problems, labels),
     ]
     return "\n\n".join(parts)
+
+
+def describe_methods(of_problems: pd.DataFrame) -> str:
+    """Say what the papers' methods are worth beside the exact shortest path with rounded corners.
+
+    of_problems: as from `methods.measure_studies`.
+    """
+    rows = methods.group_by_family(of_problems)
+    rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
+    none = int((rows["adds"] == 0).sum())
+    return (
+        "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
+        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios with smooth paths, no "
+        "method of a paper is shorter at equal smoothness, or smoother."
+    )
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
@@ -245,6 +260,17 @@ def format_name(key: str) -> str:
     ('Song 2016', 'Meledje')
     """
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
+
+
+def write_table(table: pd.DataFrame) -> str:
+    """Write a table as markdown, its index first."""
+    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
+    rows += [
+        [name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)
+    ]
+    return "\n".join(
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    )
 
 
 def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:

@@ -7,8 +7,8 @@ import re
 
 from pydantic.fields import FieldInfo
 
+from bezierplan.analysis import columns as result_columns
 from bezierplan.analysis import table_kinds
-from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import figure, layout, panels
@@ -144,11 +144,11 @@ def _join_meaning(about: columns.Column) -> str:
     return "; ".join(filter(None, [about.meaning, about.detail]))
 
 
-def describe_columns_of_claims(tables: tuple[type, ...]) -> str:
-    """Return the table of columns of a table of claims, as Markdown."""
+def describe_columns_of_results(parts: tuple[type, ...]) -> str:
+    """Return the table of columns of a table of results, as Markdown."""
     lines = [
         f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
-        for name, (kind, about) in columns.read_columns(*tables).items()
+        for name, (kind, about) in columns.read_columns(*parts).items()
     ]
     return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
 
@@ -174,10 +174,10 @@ def update_columns(text: str) -> str:
         f"{name} of drives": describe_columns_of_drives(table)
         for name, table in columns.TABLES.items()
     }
-    claims_tables = {
-        name: describe_columns_of_claims(tables) for name, tables in claim_columns.TABLES.items()
+    of_results = {
+        name: describe_columns_of_results(parts) for name, parts in result_columns.TABLES.items()
     }
-    return _update_tables(text, every | drives | claims_tables, "columns")
+    return _update_tables(text, every | drives | of_results, "columns")
 
 
 def _update_tables(text: str, tables: dict[str, str], what: str) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from studies import studies
 
-from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
+from bezierplan.analysis.stored_runs import compute_table_digest, list_run_tables
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems
 from bezierplan.running.columns import DriveTimes, Times

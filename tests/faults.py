@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import loading
 
 
 def told(file: Path, old: str, new: str, study: Path) -> str:
@@ -16,6 +16,6 @@ def told(file: Path, old: str, new: str, study: Path) -> str:
     assert old in text
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(Fault) as caught:
-        reading.load([study])
+        loading.load([study])
     assert "\n" not in str(caught.value)
     return str(caught.value)

@@ -8,7 +8,7 @@ import checks_of_claims
 import pandas as pd
 from pivots import pivot_of
 
-from bezierplan.analysis.numbers import wholes
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
@@ -169,7 +169,9 @@ def page(folder: Path) -> SimpleNamespace:
             table_row=[0, 1, 0], table_column=[0, 0, 1], as_printed="10.51"
         ),
         "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
-        "one/paper/table1.wholes": pd.DataFrame([LEVEL, ORDER], columns=wholes.COLUMNS),
+        "one/paper/table1.order_and_level": pd.DataFrame(
+            [LEVEL, ORDER], columns=COLUMNS_OF["order_and_level"]
+        ),
         "one/beyond/more.comparison": numbers,
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),

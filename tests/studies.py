@@ -12,7 +12,7 @@ import pandas as pd
 from bezierplan.analysis import drawings, results
 from bezierplan.planners import Plan, load_planner
 from bezierplan.running import problems
-from bezierplan.study import reading
+from bezierplan.study import loading
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import build_problems_job
 from bezierplan.workspaces import files
@@ -27,7 +27,7 @@ def study(key: str) -> Study:
     """A study, without the checks across its files, which take seconds. Tests share it, so none may
     change it.
     """
-    return reading.read_study(FOLDER / key)
+    return loading.read_study(FOLDER / key)
 
 
 def studies() -> dict[str, Study]:

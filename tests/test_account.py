@@ -109,7 +109,7 @@ def dots(axes, frame, looks):
 ASKED = """
 import os, sys
 import snakemake.cli, snakemake.dag, snakemake.executors.dryrun, snakemake.scheduling.greedy
-from bezierplan.analysis.outcome import proof
+from bezierplan.analysis.outcome import verification
 from bezierplan.commands import verify
 from bezierplan.machine import digest
 from bezierplan.running import recheck
@@ -118,7 +118,7 @@ from bezierplan.study import checks
 process.run_function = lambda work, *given: [*work(str)]
 checks.Checks.check = lambda self: []
 recheck.verify = recheck.run_again = lambda *given: recheck.RunsVerdict()
-proof.differing = lambda *given: (0, [])
+verification.differing = lambda *given: (0, [])
 
 def ended(main, *given):
     try:
@@ -136,7 +136,7 @@ for line in sys.stdin:
             getattr(known, "cache_clear", int)()
         sys.argv = ["snakemake", *sys.argv[1:]]
         ended(snakemake.cli.main, sys.argv[1:])
-        ended(verify.main, proof.Path("results/smoke"))
+        ended(verify.main, verification.Path("results/smoke"))
         os._exit(0)
     os.waitpid(child, 0)
     print(flush=True)

@@ -9,7 +9,7 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis import results
-from bezierplan.analysis.run_tables import compute_table_digest
+from bezierplan.analysis.stored_runs import compute_table_digest
 from bezierplan.running import columns, problems, table_files
 from bezierplan.running.inputs import Files
 from bezierplan.study import captions, definition, jobs

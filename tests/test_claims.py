@@ -13,15 +13,16 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from bezierplan.analysis import metrics, statistics, words
-from bezierplan.analysis.claims import columns, sentences, variants, verdicts
+from bezierplan.analysis import legend, metrics, statistics
 from bezierplan.analysis.claims import judge as judging
+from bezierplan.analysis.claims import sentences, variants, verdicts
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
 from bezierplan.analysis.claims.material import Display, Material, StudyForClaims
 from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
 from bezierplan.analysis.claims.sentences import Entry
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
 from bezierplan.schema import checked
@@ -1148,10 +1149,10 @@ def test_the_decisive_comparison_is_marked_even_among_equal_ones():
 
 def test_columns():
     summary, details = judge({"checks": [LOWER]}, APART)
-    assert summary.columns.to_list() == columns.CLAIM_COLUMNS
-    assert details.columns.to_list() == columns.CHECK_COLUMNS
+    assert summary.columns.to_list() == COLUMNS_OF["claims"]
+    assert details.columns.to_list() == COLUMNS_OF["claim_checks"]
     assert details["experiments"].to_list() == ["tried"]
-    assert set(summary["verdict"]) <= set(words.select_words("claim"))
+    assert set(summary["verdict"]) <= set(legend.select_words("claim"))
 
 
 # How often a verdict is right.

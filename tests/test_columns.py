@@ -8,7 +8,7 @@ import pytest
 import tables_of_keys as keys
 from chunks import CHUNK, MADE
 
-from bezierplan.analysis.claims import columns as claim_columns
+from bezierplan.analysis import columns as result_columns
 from bezierplan.planners import PLACE
 from bezierplan.running import columns, execution, problems, table_files
 
@@ -23,7 +23,7 @@ def test_tables_of_columns_are_those_of_the_declarations():
         f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text
         for name in columns.TABLES
     )
-    assert all(f"<!-- columns of {name} -->" in text for name in claim_columns.TABLES)
+    assert all(f"<!-- columns of {name} -->" in text for name in result_columns.TABLES)
 
 
 def test_a_row_has_the_declared_columns_and_no_other():
@@ -75,5 +75,5 @@ def test_every_column_says_what_it_means():
         for _, about in columns.read_columns(*kind.every, kind.drives).values():
             assert about.meaning
             assert about.unit in ("", "units", "steps", "s")
-    for tables in claim_columns.TABLES.values():
+    for tables in result_columns.TABLES.values():
         assert all(about.meaning for _, about in columns.read_columns(*tables).values())

@@ -13,7 +13,7 @@ import pytest
 import starts
 
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import loading
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "python.md"
@@ -102,7 +102,7 @@ def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
 )
 def test_configuration_of_a_module_is_checked(given, expected):
     with pytest.raises(Fault, match=f"^config/config.yaml or --config: {expected}"):
-        reading.read_config({"studies": ["song2016"]} | given)
+        loading.read_config({"studies": ["song2016"]} | given)
 
 
 def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
@@ -119,7 +119,7 @@ def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
         "studies": [f"{tmp_path}/song2016"],
         "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}},
     }
-    resolved = reading.load(reading.read_config(given))["song2016"].resolve_settings("smooth")
+    resolved = loading.load(loading.read_config(given))["song2016"].resolve_settings("smooth")
     assert (
         resolved["penalty"],
         resolved["generations"],
@@ -130,7 +130,7 @@ def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
 
 def test_a_study_with_other_settings_is_checked_anew():
     good, bad = ({ROOT / "config/studies/song2016": {"population": number}} for number in (20, 21))
-    reading.load(list(good))
-    reading.load(good)
+    loading.load(list(good))
+    loading.load(good)
     with pytest.raises(Fault, match="population: 21"):
-        reading.load(bad)
+        loading.load(bad)

@@ -19,10 +19,10 @@ from playwright.sync_api import expect
 from test_page_browser import browser, needs_browser  # noqa: F401
 
 import bezierplan as bp
-from bezierplan.analysis.words import WORDS
+from bezierplan.analysis.legend import WORDS
 from bezierplan.places import OUTCOME, STUDIES
 from bezierplan.planners import list_planners
-from bezierplan.study import reading
+from bezierplan.study import loading
 
 ROOT = Path(__file__).parents[1]
 WIDTHS = [1400, 390]
@@ -111,7 +111,7 @@ def test_claims_and_captions_have_the_verdicts_of_the_outcome(papers):
 
 
 def test_pages_have_words_and_no_more_digits_than_are_read(site):
-    studies = reading.load([*STUDIES.iterdir()]).values()
+    studies = loading.load([*STUDIES.iterdir()]).values()
     keys = {name for study in studies for name in study.methods if "_" in name} | {"None"}
     faults = {}
     for file in [*site.glob("*.html"), *site.glob("papers/*"), *site.glob("methods/*")]:

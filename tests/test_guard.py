@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from chunks import BENDS, DISC
 
-from bezierplan.analysis.run_tables import format_row
+from bezierplan.analysis.stored_runs import format_row
 from bezierplan.planners import load_planner
 from bezierplan.running import execution
 from bezierplan.running.guard import interface, process, worker

@@ -12,11 +12,11 @@ from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 from studies import studies, study
 
-from bezierplan.analysis import markdown
+from bezierplan.analysis import rst
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import captions, evidence, jobs, page, reading, runs_behind
+from bezierplan.study import captions, evidence, jobs, loading, page, runs_behind
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -25,7 +25,7 @@ RULES = ("runs", "table", "all", "default")
 
 def fault(given):
     with pytest.raises(Fault) as caught:
-        reading.check_names(given)
+        loading.check_names(given)
     return str(caught.value)
 
 
@@ -36,7 +36,7 @@ def elsewhere(tmp_path, key):
 
 
 def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
-    reading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"))
+    loading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"))
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ HOSTILE = (
 
 
 def test_caption_is_one_line_that_says_just_what_it_says():
-    html = publish_parts(markdown.escape_rst(HOSTILE), writer="html")["body"]
+    html = publish_parts(rst.escape_rst(HOSTILE), writer="html")["body"]
     assert re.fullmatch("<p>[^<>]*</p>", html.strip())
     plain = html.replace("&lt;", "<").replace("&gt;", ">").strip()
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"

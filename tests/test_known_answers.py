@@ -165,7 +165,7 @@ def test_ten_times_the_paper_s_runs_tell_a_chance(runs, known):
         terms, (), ("a", "b"), {"": values}, printed, 10, boolean=False, paired=False
     )
     check = checks_of_claims.check_of(LOWER | {"statistic": "min"})
-    assert effects.judge_by_draws(check, compared, "").chance_known == known
+    assert effects.measure_effect(check, compared, "")[0].chance_known == known
 
 
 def test_p_and_interval_of_draws():

@@ -23,7 +23,7 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import cut_motion
 from bezierplan.running.simulation.robot import drive
-from bezierplan.study import reading
+from bezierplan.study import loading
 from bezierplan.study.jobs import build_chunk, build_problems_job
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import (
@@ -245,7 +245,7 @@ def test_faults_of_heights_are_told(text, tmp_path):
 
 
 def test_an_own_map_of_any_size_needs_configuration_alone():
-    study = reading.load([YARD])["yard"]
+    study = loading.load([YARD])["yard"]
     made, _ = problems.build_all(build_problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
         runs, times = execution.run_chunk(made, build_chunk(study, "tries", method, "full", 0))

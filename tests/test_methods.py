@@ -7,9 +7,11 @@ import pandas as pd
 import pytest
 
 import bezierplan as bp
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.results import Results
 from bezierplan.geometry.tightest_turn import largest_curvature
+from bezierplan.study.experiments import FamilyEntry
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -57,14 +59,14 @@ def rows():
     problems = {each.name: each for each in (BLOCKED, FREE)}
     results = Results(pd.DataFrame(runs), problems, pd.DataFrame())
     families = {
-        "in the way": methods.Family("field", straight="blocked"),
-        "one": methods.Family("field", ["free"]),
+        "in the way": FamilyEntry(experiment="field", straight="blocked"),
+        "one": FamilyEntry(experiment="field", problems=["free"]),
     }
     return methods.measure_studies({"mine": "curved"}, {"mine": families}, {"mine/field": results})
 
 
 def test_a_row_for_each_method_and_problem(rows):
-    assert tuple(rows) == methods.COLUMNS
+    assert [*rows] == COLUMNS_OF["methods"]
     curved, cornered, straight = rows.to_dict("records")
     assert (curved["family"], straight["family"]) == ("in the way", "one")
     assert (curved["straight"], straight["straight"]) == (False, True)

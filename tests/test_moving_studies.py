@@ -10,14 +10,14 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis import metrics, results
-from bezierplan.analysis.run_tables import is_equal
+from bezierplan.analysis.stored_runs import is_equal
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import drives, execution, problems
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import loading
 from bezierplan.study.jobs import build_chunk, build_problems_job
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
@@ -103,7 +103,7 @@ def chunk(study):
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory):
     """The study, and its drives."""
-    study = reading.load([written(tmp_path_factory.mktemp("drives"))])["mystudy"]
+    study = loading.load([written(tmp_path_factory.mktemp("drives"))])["mystudy"]
     return study, chunk(study)
 
 
@@ -148,7 +148,7 @@ def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
     home = written(tmp_path, "start: centre", "start: centre, warm: true")
     with (home / "walk.py").open("a") as file:
         file.write(RESUMES)
-    for run in chunk(reading.load([home])["mystudy"])[0].to_pylist():
+    for run in chunk(loading.load([home])["mystudy"])[0].to_pylist():
         assert run["evaluations"] > run["replans"] + 1 > 1
 
 
@@ -157,7 +157,7 @@ def test_a_resume_without_a_state_is_told(tmp_path):
     with (home / "walk.py").open("a") as file:
         file.write(RESUMES.replace("evaluations=made), made", "evaluations=made)"))
     with pytest.raises(RuntimeError, match=r"resume returns a Plan; expected a Plan and what"):
-        chunk(reading.load([home])["mystudy"])
+        chunk(loading.load([home])["mystudy"])
 
 
 def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
@@ -239,7 +239,7 @@ def test_files_of_problems_keep_the_world(driven, tmp_path):
 )
 def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
     with pytest.raises(Fault) as fault:
-        reading.load([written(tmp_path, old, new)])
+        loading.load([written(tmp_path, old, new)])
     assert told in str(fault.value)
     assert "\n" not in str(fault.value)
 

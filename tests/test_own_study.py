@@ -13,7 +13,7 @@ import pytest
 import starts
 
 from bezierplan.__main__ import main
-from bezierplan.analysis.outcome import proof
+from bezierplan.analysis.outcome import verification
 from bezierplan.commands import verify
 
 ROOT = Path(__file__).parents[1]
@@ -264,7 +264,7 @@ def test_what_was_verified_is_listed_and_can_be_judged_again(results, monkeypatc
     judged = json.loads((results.parent / "verified.json").read_text())
     assert f"{results.name}/claims.csv" in judged["sha256"]
     with contextlib.chdir(results.parents[2]):
-        monkeypatch.setattr(proof, "find_differences", lambda *given: (0, []))
+        monkeypatch.setattr(verification, "find_differences", lambda *given: (0, []))
         verify.main(Path("results/full"), cores=1)
     said = capsys.readouterr().out
     assert f"{judged['runs']} runs in {judged['files']} files: " in said

@@ -142,7 +142,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     numbers, claims = (reader.read(folder / f"{name}.csv") for name in ("numbers", "claims"))
     numbers["n_ours"], claims["verdict"] = 4000, "partly"
     nothing = pd.DataFrame(columns=["study", "table", "id", "variant"])
-    (file,) = (folder / "one").rglob("table1.wholes.csv")
+    (file,) = (folder / "one").rglob("table1.order_and_level.csv")
     columns = reader.read(file).assign(study="one", table="table1")
     evidence = reader.Evidence(numbers, claims, nothing, nothing, columns)
     own = reader.read_study_results(job()._replace(outcome=["one"]), folder, None, evidence)["one"]

@@ -7,7 +7,7 @@ import pytest
 from studies import study
 
 from bezierplan.__main__ import main
-from bezierplan.analysis.run_tables import is_equal
+from bezierplan.analysis.stored_runs import is_equal
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
 from bezierplan.schema.checked import Fault

@@ -9,7 +9,7 @@ import pytest
 from chunks import BENDS, DISC
 
 from bezierplan.analysis import results
-from bezierplan.analysis.run_tables import format_row
+from bezierplan.analysis.stored_runs import format_row
 from bezierplan.running import execution, problems
 from bezierplan.running.guard import interface, worker
 

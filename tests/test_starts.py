@@ -9,7 +9,7 @@ import pytest
 
 from bezierplan.places import STUDIES
 from bezierplan.schema.checked import Fault
-from bezierplan.study import checks, reading
+from bezierplan.study import checks, loading
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
@@ -20,7 +20,7 @@ WALKS = Path(__file__).parent / "data" / "walks"
 def checked(monkeypatch, tmp_path):
     """Studies that were checked; what is known of earlier checks lies in a folder of its own."""
     names, check = [], checks.Checks.check
-    monkeypatch.setattr(reading, "find_cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(loading, "find_cache_folder", lambda: tmp_path / "cache")
     monkeypatch.setattr(
         checks.Checks, "check", lambda self: names.append(self.study.key) or check(self)
     )
@@ -33,7 +33,7 @@ def walks(tmp_path):
 
 
 def test_what_was_checked_is_not_checked_again(checked, walks):
-    first, second = reading.load([walks]), reading.load([walks])
+    first, second = loading.load([walks]), loading.load([walks])
     assert checked == ["walks"]
     assert first == second
 
@@ -42,30 +42,30 @@ def test_what_was_checked_is_not_checked_again(checked, walks):
     "name", ["experiments.yaml", "artefacts.yaml", "walk.py", "room.txt", "published/lengths.csv"]
 )
 def test_an_edit_of_any_file_is_checked(checked, walks, name):
-    reading.load([walks])
+    loading.load([walks])
     file = walks / name
     date = file.stat().st_mtime_ns
     file.write_bytes(file.read_bytes() + b"\n")
     os.utime(file, ns=(date, date))
     with contextlib.suppress(Fault):  # an empty line of a map is one
-        reading.load([walks])
+        loading.load([walks])
     assert checked == ["walks", "walks"]
 
 
 def test_a_file_behind_a_link_a_setting_and_the_package_are_checked(checked, walks, monkeypatch):
-    reading.load([walks])
+    loading.load([walks])
     shutil.move(walks / "room.txt", walks.parent / "room.txt")
     (walks / "room.txt").symlink_to(walks.parent / "room.txt")
     with pytest.raises(Fault, match="lies outside the study's folder"):
-        reading.load([walks])
+        loading.load([walks])
     (walks / "room.txt").unlink()
     shutil.move(walks.parent / "room.txt", walks / "room.txt")
-    reading.load([walks])
+    loading.load([walks])
     assert len(checked) == 2
     with pytest.raises(Fault, match="triez: unknown"):
-        reading.load({walks: {"triez": 3}})
-    monkeypatch.setattr(reading, "_describe_package", lambda: ["another"])
-    reading.load([walks])
+        loading.load({walks: {"triez": 3}})
+    monkeypatch.setattr(loading, "_describe_package", lambda: ["another"])
+    loading.load([walks])
     assert len(checked) == 4
 
 
@@ -73,13 +73,13 @@ def test_a_study_with_a_fault_is_told_each_time(checked, walks):
     (walks / "room.txt").write_text("no map")
     for _ in range(2):
         with pytest.raises(Fault, match=r"room\.txt"):
-            reading.load([walks])
+            loading.load([walks])
     assert checked == ["walks", "walks"]
 
 
 def test_without_a_place_to_keep_it_a_study_is_checked_each_time(checked, walks, tmp_path):
     (tmp_path / "cache").write_text("")
-    assert reading.load([walks]) == reading.load([walks])
+    assert loading.load([walks]) == loading.load([walks])
     assert checked == ["walks", "walks"]
 
 
@@ -98,4 +98,4 @@ def test_without_a_place_to_keep_it_a_study_is_checked_each_time(checked, walks,
 )
 def test_targets_of_one_study_ask_for_no_other(targets, expected):
     folders = {STUDIES / name: {} for name in ("song2016", "ma2020")}
-    assert {folder.name for folder in reading.select_studies(folders, targets)} == expected
+    assert {folder.name for folder in loading.select_studies(folders, targets)} == expected

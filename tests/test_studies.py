@@ -21,7 +21,7 @@ from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.schema import checked
-from bezierplan.study import alternatives, checks, jobs, reading
+from bezierplan.study import alternatives, checks, jobs, loading
 
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 SWARM = {name: value for name, value in THARWAT["settings"].items() if not isinstance(value, dict)}
@@ -418,7 +418,7 @@ def test_methods_of_tharwat2018():
 @pytest.mark.parametrize("key", KEYS)
 def test_study_is_free_of_faults(key):
     """All checks pass, and no test has changed the copy that all of them share."""
-    study = reading.read_study(STUDIES / key)
+    study = loading.read_study(STUDIES / key)
     assert not checks.Checks(study).check()
     assert study == shared(key)
 

@@ -7,7 +7,7 @@ import pytest
 
 from bezierplan.__main__ import main
 from bezierplan.schema import checked
-from bezierplan.study import checks, reading
+from bezierplan.study import checks, loading
 
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
@@ -32,7 +32,7 @@ def faults(folder):
     a screen.
     """
     with pytest.raises(checked.Fault) as caught:
-        reading.load([folder])
+        loading.load([folder])
     assert all(line.isprintable() and len(line) < 1600 for line in caught.value.lines)
     return caught.value.lines
 
@@ -142,4 +142,4 @@ def test_equal_faults_of_several_entries_and_what_fails_after_them_are_all_told(
 
 
 def test_studies_for_tests_have_no_fault():
-    assert reading.load([DATA / "walks", DATA / "yard"])
+    assert loading.load([DATA / "walks", DATA / "yard"])

@@ -12,7 +12,7 @@ from bezierplan.running import execution
 from bezierplan.running.chunk import Condition
 from bezierplan.schema import checked, model
 from bezierplan.schema.checked import Fault
-from bezierplan.study import artefacts, jobs, reading
+from bezierplan.study import artefacts, jobs, loading
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 
@@ -28,17 +28,17 @@ EXPERIMENTS = "experiments.yaml"
 
 def test_unknown_study_is_told_with_the_closest_name():
     with pytest.raises(Fault, match=r"song2061.*did you mean song2016\?"):
-        reading.read_config({"studies": ["song2061"]})
+        loading.read_config({"studies": ["song2061"]})
 
 
 def test_unknown_key_of_the_configuration_is_told():
     with pytest.raises(Fault, match=r"studys: unknown key; did you mean studies\?"):
-        reading.read_config({"studys": ["song2016"]})
+        loading.read_config({"studys": ["song2016"]})
 
 
 def test_the_same_study_twice_is_told():
     with pytest.raises(Fault, match="name song2016 is there already"):
-        reading.load([SONG, SONG])
+        loading.load([SONG, SONG])
 
 
 def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(folder):
@@ -50,7 +50,7 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
             place, place + " settings: {genes: 5, samples: 7, generations: 9},", 1
         )
     )
-    study = reading.load([folder])["song2016"]
+    study = loading.load([folder])["song2016"]
     job = jobs.build_chunk(study, "routes", "smooth", "smoke", 0)
     first, second = (
         execution.resolve_settings(job, Condition(problem, {})) for problem in ("0_15", "0_255")
@@ -106,7 +106,7 @@ def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(
         "  genes: 6", "  binary_genetic: {generations: 7, samples: 7}\n  genes: 6", 1
     )
     file.write_text(text)
-    study = reading.load([folder])["song2016"]
+    study = loading.load([folder])["song2016"]
     resolved = study.resolve_settings("smooth")
     assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 501, 6)
     assert study.resolve_settings("shortest_path") == {}

@@ -1,5 +1,6 @@
 """The answer to each paper: its facts in the kept outcome, and faults that are told."""
 
+import facts
 import outcome
 import pandas as pd
 import pytest
@@ -15,7 +16,7 @@ ANSWERED = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
 @pytest.fixture(scope="module")
 def ma2020():
     file = TREE / "config/studies/ma2020/verdict.yaml"
-    return texts.read(file), texts.read_outcome_tables(KEPT, "ma2020")
+    return texts.read(file), facts.read_outcome_tables(KEPT, "ma2020")
 
 
 @pytest.mark.parametrize("study", ANSWERED)
@@ -40,7 +41,7 @@ def faults(found, text="All is well.", title="Yes", tables=None, **changed):
     }
     fact = {name: value for name, value in (fact | changed).items() if value is not None}
     content = {"title": title, "text": text, "facts": {"short": fact}}
-    return texts.fill(texts.Text.model_validate(content), tables or found[1]).faults
+    return facts.fill(texts.Text.model_validate(content), tables or found[1]).faults
 
 
 def test_a_fact_fails_that_finds_other_rows_than_it_must(ma2020):
@@ -106,5 +107,5 @@ def test_values_are_shown_with_their_digits(ma2020):
     checks = ma2020[1]["claim_checks"].copy()
     own = (checks["id"] == "C30") & (checks["check"] == 1)
     checks.loc[own, "effect"] = [0.416, 0.234]
-    answer = texts.fill(texts.Text.model_validate(content), ma2020[1] | {"claim_checks": checks})
+    answer = facts.fill(texts.Text.model_validate(content), ma2020[1] | {"claim_checks": checks})
     assert answer.text == "20 to 40 %"

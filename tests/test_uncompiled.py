@@ -12,7 +12,7 @@ import starts
 from studies import study
 
 import bezierplan
-from bezierplan.analysis.run_tables import format_row
+from bezierplan.analysis.stored_runs import format_row
 from bezierplan.commands import replay
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check

@@ -18,7 +18,7 @@ import starts
 from chunks import CHUNK, CLAIMS, MADE
 
 from bezierplan.__main__ import main
-from bezierplan.analysis.outcome import proof
+from bezierplan.analysis.outcome import verification
 from bezierplan.machine import digest
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, recheck, table_files
@@ -148,12 +148,12 @@ def test_each_edit_of_one_byte_is_named(tmp_path):
         place = draw.randrange(len(content))
         other = draw.choice([byte for byte in range(256) if byte != content[place]])
         file.write_bytes(content[:place] + bytes([other]) + content[place + 1 :])
-        listed = proof.read_list(folder)
-        assert [fault.file for fault in proof.find_changed_files(folder, listed)] == [str(file)], (
-            place
-        )
+        listed = verification.read_list(folder)
+        assert [fault.file for fault in verification.find_changed_files(folder, listed)] == [
+            str(file)
+        ], place
         file.write_bytes(content)
-    assert proof.find_changed_files(folder, proof.read_list(folder)) == []
+    assert verification.find_changed_files(folder, verification.read_list(folder)) == []
 
 
 def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, tmp_path, capsys):

@@ -23,7 +23,7 @@ import trees
 import yaml
 from trees import EXPERIMENTS, edit, small
 
-from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
+from bezierplan.analysis.stored_runs import compute_table_digest, list_run_tables
 
 ROOT = Path(__file__).parents[1]
 # Those of the paper, and the baseline that all studies share.

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from bezierplan.analysis import answers
+from bezierplan.analysis import judgement
 from bezierplan.figures import drawn_path, style
 from bezierplan.geometry import path_files, samples, shortest_paths
 from bezierplan.places import STUDIES, require_extra
@@ -184,7 +184,7 @@ class Judgement:
 
     def _repr_html_(self) -> str:
         """Return the picture and what the command line prints, for notebooks."""
-        return drawn_path.build_html(answers.write_html(self), self.plot)
+        return drawn_path.build_html(judgement.write_html(self), self.plot)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -459,7 +459,7 @@ def check(problem: Problem, path: Path) -> Judgement:
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
     # The verdict is about the plain copy; the caller gets the path that was given.
-    return Judgement(**answers.compute_judgement(*_bound(problem), plain) | {"path": path})
+    return Judgement(**judgement.compute_judgement(*_bound(problem), plain) | {"path": path})
 
 
 def plan(
@@ -626,9 +626,9 @@ def _answer(
     answered: list[Answer] = []
     try:
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
-            judged = answers.compute_judgement(
+            judged = judgement.compute_judgement(
                 run.problem, run.bound, plan.path
-            ) | answers.list_planner_fields(plan)
+            ) | judgement.list_planner_fields(plan)
             # This checks our own geometry, not the planner.
             if judged.get("feasible") and judged["length"] < shortest_paths.least_length(run.bound):
                 raise ValueError(
@@ -913,7 +913,7 @@ def replay(run: str) -> Answer:
 
 def answer_of(rerun: Any, run: str) -> Answer:
     """Return the answer in the results of one run, by its name."""
-    return Answer(**answers.judge_run(rerun, run))
+    return Answer(**judgement.judge_run(rerun, run))
 
 
 # Maps and problems lie in a layer below that of figures.

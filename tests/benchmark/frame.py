@@ -17,7 +17,7 @@ from bezierplan.places import STUDIES
 from bezierplan.planners import Plan, load_planner
 from bezierplan.running import execution, problems
 from bezierplan.running.jobs.watchdog import measure_cpu_time
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs, loading
 from bezierplan.study.definition import Study
 from bezierplan.workspaces.problem import Problem
 
@@ -108,7 +108,7 @@ def ratio(work: Work, cold: bool = False) -> float:
 
 def study(key: str) -> Study:
     """A study of this project."""
-    return reading.read_study(STUDIES / key)
+    return loading.read_study(STUDIES / key)
 
 
 def studies() -> list[Study]:

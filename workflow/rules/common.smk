@@ -21,11 +21,11 @@ set_kernel_target()
 from snakemake.cli import get_argument_parser
 from snakemake.iocontainers import Wildcards
 
-from bezierplan.analysis import markdown
+from bezierplan.analysis import rst
 from bezierplan.running.jobs import forks, watchdog
 from bezierplan.running.inputs import choose_tree
 from bezierplan.schema import checked
-from bezierplan.study import captions, experiments, jobs, page, reading, stored
+from bezierplan.study import captions, experiments, jobs, page, loading, stored
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -43,7 +43,7 @@ def or_exit(work, *of):
         sys.exit(2)
 
 
-CONFIG = reading.find_config_file()
+CONFIG = loading.find_config_file()
 # In a module, the configuration is that of the workflow which uses it.
 if not config:
     or_exit(checked.read, CONFIG)
@@ -69,14 +69,14 @@ def targets():
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 # Files of a whole scale are of the studies that are asked for, and of those that they show already.
 PAGES = {
-    scale: reading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES
+    scale: loading.read_page_studies(f"{PREFIX}results/{scale}") for scale in experiments.SCALES
 }
-FOLDERS = or_exit(reading.read_config, config)
+FOLDERS = or_exit(loading.read_config, config)
 # A target of one study starts without the others.
-NAMED = reading.select_studies(FOLDERS, targets())
-ASKED = or_exit(reading.load, NAMED)
+NAMED = loading.select_studies(FOLDERS, targets())
+ASKED = or_exit(loading.load, NAMED)
 SHOWN = {key: word for listed in PAGES.values() for key, word in listed.items() if key not in ASKED}
-STUDIES = ASKED | (reading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
+STUDIES = ASKED | (loading.load_others(SHOWN, config) if len(NAMED) == len(FOLDERS) else {})
 # In the order in which they came.
 OF_SCALE = {
     scale: {key: STUDIES[key] for key in {**listed, **ASKED} if key in STUDIES}
@@ -284,7 +284,7 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return markdown.escape_rst(
+    return rst.escape_rst(
         captions.build_caption(STUDIES[wildcards.study], name, wildcards.scale).write()
     )
 
@@ -306,7 +306,7 @@ def of_studies(scale, name, has=lambda study: study.claims):
 
 def summed(scale):
     """Files of all studies of a scale together."""
-    names = ["numbers", "claims", "methods"] if compared(scale, "wholes") else []
+    names = ["numbers", "claims", "methods"] if compared(scale, "order_and_level") else []
     return [f"results/{scale}/{name}.csv" for name in names]
 
 
@@ -348,7 +348,7 @@ def shown(wildcards):
     ]
     return [
         *artefacts,
-        *([f"results/{scale}/wholes.csv"] if summed(scale) else []),
+        *([f"results/{scale}/order_and_level.csv"] if summed(scale) else []),
         *of_studies(scale, "claims.csv"),
         *of_studies(scale, "claim_checks.csv"),
         *of_studies(scale, "claims_by_reading.csv"),

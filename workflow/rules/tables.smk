@@ -1,5 +1,5 @@
 # Tables in the paper's form; published.csv holds the printed numbers in the same rows and columns,
-# comparison.csv each printed number next to ours, with its verdict and place, wholes.csv each column.
+# comparison.csv each printed number next to ours, with its verdict and place, order_and_level.csv each column.
 
 
 rule table:
@@ -14,7 +14,7 @@ rule table:
             caption="../report/artefact.rst",
         ),
         published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
-        wholes=f"{RESULTS}/{{tree}}/{{table}}.wholes.csv",
+        order_and_level=f"{RESULTS}/{{tree}}/{{table}}.order_and_level.csv",
         comparison=report(
             f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
             category="{study}",

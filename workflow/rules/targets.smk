@@ -1,7 +1,7 @@
 # Names for what a user may want: the papers, what goes beyond them, a scale, a study, a table or
 # figure. `snakemake --list-target-rules` lists them.
 
-or_exit(reading.check_names, STUDIES)
+or_exit(loading.check_names, STUDIES)
 
 
 rule all:

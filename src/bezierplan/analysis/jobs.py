@@ -180,7 +180,7 @@ class Recheck(Job):
 @dataclass(frozen=True)
 class TableOfRuns(Job):
     """The job that makes a table of runs, and compares it with published numbers, one by one and as
-    wholes.
+    columns.
     """
 
     name: str
@@ -204,7 +204,7 @@ class TableOfRuns(Job):
         """Make the table and its comparison with published numbers."""
 
         from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.numbers import comparison, tables, wholes
+        from bezierplan.analysis.numbers import comparison, order_and_level, tables
         from bezierplan.running import inputs
 
         # The metrics of a study are known once its code is loaded.
@@ -230,8 +230,10 @@ class TableOfRuns(Job):
             placed = compared.dropna(subset="table_row")
             printed = tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
             printed.to_csv(output_files.published, lineterminator="\n")
-            columns = wholes.compare_columns(runs, self.spec, compared, self.name, self.paired)
-            self.write(columns, output_files.wholes)
+            columns = order_and_level.compare_columns(
+                runs, self.spec, compared, self.name, self.paired
+            )
+            self.write(columns, output_files.order_and_level)
         self.write(compared, output_files.comparison)
 
 
@@ -341,8 +343,8 @@ class MethodsTable(Job):
 
     proposed: dict[str, str | None]
     """By study, the method that its paper proposes."""
-    families: dict[str, dict[str, dict[str, Any]]]
-    """By study: what the study declares."""
+    families: dict[str, dict[str, Any]]
+    """By study: the families that it declares (`study.experiments.FamilyEntry`)."""
     repeats: dict[str, int]
     """By study/experiment."""
     problems: dict[str, list[str]]
@@ -362,11 +364,7 @@ class MethodsTable(Job):
             every = results.read(files[place], number, place.partition("/")[2])
             runs = results.select(every.runs, {"problem": self.problems[place]})
             by_place[place] = every._replace(runs=runs)
-        families = {
-            study: {name: methods.Family(**each) for name, each in own.items()}
-            for study, own in self.families.items()
-        }
-        table = methods.measure_studies(self.proposed, families, by_place)
+        table = methods.measure_studies(self.proposed, self.families, by_place)
         table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
@@ -385,7 +383,7 @@ class Summary(Job):
         study_code.load_functions(self.code)
         summed = summary.gather(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
-            list(input_files.wholes),
+            list(input_files.order_and_level),
             list(input_files.claims),
         )
         for name, table in summed.items():
@@ -409,7 +407,7 @@ class Verification(Job):
         """List all files with their digests and the accounts of their jobs."""
         import json
 
-        from bezierplan.analysis.outcome import proof
+        from bezierplan.analysis.outcome import verification
         from bezierplan.running import recheck
 
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
@@ -418,7 +416,7 @@ class Verification(Job):
         )
         content = recheck.check_sound(verdict) | {
             "digest": verdict.digest,
-            "made_by": proof.describe_version(),
+            "made_by": verification.describe_version(),
             "versions": recheck.read_versions(),
             "studies": self.studies,
             "accounts": [

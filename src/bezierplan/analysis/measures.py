@@ -19,7 +19,8 @@ from bezierplan.workspaces.grid import Grid
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Path, Problem
+    from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.problem import Path
 
 # Values of a curve's parameter at which curvature is taken: 120 steps on each of the five cubic
 # pieces of song2016.
@@ -32,9 +33,7 @@ CORNER = 1e-6
 ROUNDED = 0.01
 
 
-def find_disagreements(
-    claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]
-) -> np.ndarray:
+def find_disagreements(claimed: bool, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Return where (n,) the planner's own test gives this result and the checker the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
 
@@ -46,7 +45,7 @@ def find_disagreements(
     least=1.0,
     step=0.5,
 )
-def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def rank(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Rank the objective within one unit (n,), among methods or numbers of obstacles; ties share
     the mean of their ranks.
     """
@@ -79,9 +78,7 @@ def extend_histories(runs: pd.DataFrame) -> np.ndarray:
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
-def find_first_generation(
-    share: float, runs: pd.DataFrame, problems: dict[str, Problem]
-) -> np.ndarray:
+def find_first_generation(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Find the first generation (n,) whose best objective so far is at most 1 + share times the
     final one.
     """
@@ -90,12 +87,12 @@ def find_first_generation(
 
 
 @metric("-", "length / exact shortest length of the problem - 1", feasible_only=True, least=0.0)
-def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def gap(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Compute the length over the exact shortest length, minus 1 (n,)."""
     return runs["length"] / runs["bound"] - 1
 
 
-def is_near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def is_near_shortest(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Return where (n,) the certified checker accepts a path that is at most this share longer than
     the exact shortest one.
     """
@@ -105,7 +102,7 @@ def is_near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Probl
 @metric(
     "u", "exact arc length, infinite unless the certified checker accepts the path", least="bound"
 )
-def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def certified_length(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Return the length (n,) of a path that the certified checker accepts, else infinity."""
     return np.where(runs["feasible"].astype(bool), runs["length"], np.inf)
 
@@ -117,7 +114,7 @@ def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.nda
     least=0.0,
     needs=("arrival",),
 )
-def paired_gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def paired_gap_least_arrival(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Compute the gap of the arrival (n,) of the runs in whose condition and repeat all methods
     among the runs have a feasible one; NaN for the others.
     """
@@ -235,7 +232,7 @@ def cells(path: Path, grid: Grid) -> float:
 
 
 @metric("-", "whether an obstacle is in the way, so that no straight line is free", step=1.0)
-def blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def blocked(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return where (n,) the exact shortest path of a run's problem is longer than the straight
     line.
     """

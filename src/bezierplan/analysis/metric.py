@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from bezierplan.workspaces.problem import Path, Problem, Workspace
 
-    Compute = Callable[[pd.DataFrame, dict[str, Problem]], Any]
+    Problems = dict[str, Problem]
+    Compute = Callable[[pd.DataFrame, Problems], Any]
 
 # Measures of paths that a process remembers, since several checks of claims ask for the same ones:
 # up to some 200 MB.
@@ -188,7 +189,7 @@ def _measure_path(measure: Callable[[Path], float], curve: str, points: bytes) -
 
 
 def measure_on_maps(
-    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: dict[str, Problem]
+    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: Problems
 ) -> list[float]:
     """Measure each run's path in its workspace; NaN where the run has none."""
     from bezierplan.workspaces.problem import Path

@@ -27,10 +27,10 @@ from bezierplan.analysis.metric import (
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Problem
+    from bezierplan.analysis.metric import Problems
 
 
-def compute_values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
+def compute_values(runs: pd.DataFrame, name: str, problems: Problems) -> pd.Series:
     """Compute a metric of each run.
 
     Parameters

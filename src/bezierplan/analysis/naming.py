@@ -4,6 +4,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+Labels = Mapping[str, str]
+"""Name -> how it is printed."""
+
 # Units with a plural; others are abbreviations, such as m.
 _WORDS = ("unit", "cell", "step", "generation")
 
@@ -36,7 +39,7 @@ def format_count(number: int, noun: str) -> str:
     return f"{number} {noun}{'s' if number != 1 else ''}"
 
 
-def format_value(value: Any, column: str, labels: Mapping[str, str]) -> str:
+def format_value(value: Any, column: str, labels: Labels) -> str:
     """Format a value of a column: as its label, or a number after the column's label."""
     if isinstance(value, str):
         return labels.get(value, value)
@@ -44,7 +47,7 @@ def format_value(value: Any, column: str, labels: Mapping[str, str]) -> str:
     return labels.get(name, f"{name_column(column, labels)} = {name}")
 
 
-def name_column(column: str, labels: Mapping[str, str]) -> str:
+def name_column(column: str, labels: Labels) -> str:
     """Name a column or a metric as printed."""
     return labels.get(column, column.replace("_", " "))
 

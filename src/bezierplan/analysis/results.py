@@ -120,6 +120,7 @@ def join_bounds(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.Dat
     """
     bounds = bounds.set_index("problem")
     runs = _repeat_fixed_runs(runs)
+    # The allowance is for the check below alone.
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     _refuse(runs, runs["length"] < least, "length", "bound")

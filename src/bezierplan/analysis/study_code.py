@@ -20,32 +20,31 @@ def load_functions(code: Iterable[str]) -> dict[str, Callable[..., Any]]:
     """Load the code of a study, so that its metrics are known; return its functions by name, with
     those that every study has.
     """
-    loaded = {name_part(name): load_module(name) for name in code}
-    return {"marks": drawings.list_marks} | list_public(loaded.get("functions"))
+    for name in code:
+        load_module(name)
+    return {"marks": drawings.list_marks} | load_part(select_part(code, "functions"))
 
 
 def load_audit(code: Iterable[str]) -> Callable[[dict[str, pd.DataFrame]], list[dict]]:
     """Load the audit of a study's printed numbers: its own, or the rules that its file lists."""
-    own = [name for name in code if name_part(name) == "audit"]
-    if own:
-        return load_module(own[0]).audit
-    return lambda published: rules.check_rules(published) if "rules" in published else []
+    return load_part(select_part(code, "audit")).get("audit", rules.check_rules)
+
+
+def select_part(code: Iterable[str], part: str) -> list[str]:
+    """Select the module of a part from a study's code, as a list of one or none."""
+    return [name for name in code if name_part(name) == part]
 
 
 def load_part(code: list[str]) -> dict[str, Callable[..., Any]]:
     """Load the public functions of a module that a study may have, given as a list of one
     or none.
     """
-    return list_public(load_module(code[0]) if code else None)
-
-
-def list_public(of: Any) -> dict[str, Callable[..., Any]]:
-    """List the public functions of a module by name; none for None."""
     return {
         name: value
-        for name, value in (vars(of) if of else {}).items()
+        for module in map(load_module, code)
+        for name, value in vars(module).items()
         if not name.startswith("_")
         and callable(value)
         # Names that a module imports are not its own.
-        and getattr(value, "__module__", None) == of.__name__
+        and getattr(value, "__module__", None) == module.__name__
     }

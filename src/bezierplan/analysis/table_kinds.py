@@ -175,7 +175,7 @@ class Pivot(TableEntry):
         description="published lengths on grids that may be those of free polylines through cell "
         "centres from start to target, to the last digit, or of straight and diagonal moves, to "
         "the decimals of `diagonal`, which the audit enumerates: {metric, because}, and perhaps "
-        "`statistic`, `where`, `edges`, `diagonal` and `counts`",
+        "`statistic`, `where`, `edges` and `diagonal`",
     )
     primary: Where = Field(
         {},
@@ -244,6 +244,7 @@ class FunctionTable(TableEntry):
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
+# In the order in which config/README.md lists the kinds.
 TABLES = {
     model.model_fields["kind"].annotation.__args__[0]: model
     for model in TableEntry.__subclasses__()

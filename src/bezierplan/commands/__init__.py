@@ -23,9 +23,9 @@ def read_config() -> dict[str, Any]:
     """Read the configuration in config/config.yaml of the working folder, otherwise of the
     project.
     """
-    from bezierplan.study import reading
+    from bezierplan.study import loading
 
-    return checked.read(reading.find_config_file())
+    return checked.read(loading.find_config_file())
 
 
 def is_study(word: str) -> bool:
@@ -43,7 +43,7 @@ def read_studies(names: Sequence[str] = ()) -> dict[str, Any]:
     """Return the studies of some names or folders, otherwise those of the configuration. Raises
     Fault.
     """
-    from bezierplan.study import reading
+    from bezierplan.study import loading
 
     config = {"studies": [*map(find_study_path, names)]} if names else read_config()
-    return reading.load(reading.read_config(config))
+    return loading.load(loading.read_config(config))

@@ -20,10 +20,10 @@ def main(folder: Path) -> None:
     --------
     check-study mystudy
     """
-    from bezierplan.study import reading
+    from bezierplan.study import loading
 
     found = folder if is_study(str(folder)) else STUDIES / folder
     if not is_study(str(found)):
         raise Fault(f"{folder}: expected a folder with a file experiments.yaml")
-    reading.check_names(reading.load([found]))
+    loading.check_names(loading.load([found]))
     print(f"{folder}: no fault")

@@ -4,7 +4,7 @@ checksums have the same content.
 
 from pathlib import Path
 
-from bezierplan.analysis.run_tables import compute_table_digest, list_run_tables
+from bezierplan.analysis.stored_runs import compute_table_digest, list_run_tables
 
 
 def main(folder: Path) -> None:

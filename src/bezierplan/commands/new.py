@@ -12,7 +12,7 @@ from bezierplan.commands.arguments import Place
 from bezierplan.places import PACKAGE, TREE
 from bezierplan.running import problems
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import loading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.map_files import describe
 
@@ -50,7 +50,7 @@ def main(
     new mystudy --example
     new mystudy --from map.yaml --start 1,1 --target 9,9
     """
-    reading.check_name(folder.name, str(folder))
+    loading.check_name(folder.name, str(folder))
     if folder.exists() or not folder.parent.is_dir():
         raise Fault(f"{folder}: expected a new folder in one that exists")
     if len({from_ is None, start is None, target is None}) > 1:

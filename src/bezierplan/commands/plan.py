@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from bezierplan import api
-from bezierplan.analysis import answers
+from bezierplan.analysis import judgement
 from bezierplan.commands import arguments
 from bezierplan.commands.arguments import OutFile, Place
 from bezierplan.geometry import path_files
@@ -83,7 +83,7 @@ def main(
     if out and answer.path:
         answer.save(out, step=step)
     file = {"file": str(out)} if out and answer.path else {}
-    for name, text in (answers.describe_answer(answer) | file).items():
+    for name, text in (judgement.describe_answer(answer) | file).items():
         print(f"{name:16}{text}")
     if not math.isfinite(answer.shortest):
         _fail(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bezierplan import api
-from bezierplan.analysis import answers
+from bezierplan.analysis import judgement
 from bezierplan.analysis.results import Results
-from bezierplan.analysis.run_tables import find_stored_runs, is_equal
+from bezierplan.analysis.stored_runs import find_stored_runs, is_equal
 from bezierplan.commands import read_studies
 from bezierplan.figures import sheet
 from bezierplan.figures.panels import Sources, build_panel
@@ -50,7 +50,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
         draw_drive(reproduced, picture)
     else:
         answer = api.answer_of(reproduced, run)
-        lines = answers.describe_answer(answer)
+        lines = judgement.describe_answer(answer)
         answer.save(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan import api
-from bezierplan.analysis import answers
+from bezierplan.analysis import judgement
 from bezierplan.analysis.numbers import benchmark
 from bezierplan.commands.arguments import OutFile, Settings, check_suffix
 from bezierplan.geometry.shortest_paths import shortest_path
@@ -85,9 +85,9 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
             check_ends(path, problem)
         except ValueError as fault:
             raise Fault(f"{file}: {name}: {fault}") from None
-        judged = answers.compute_judgement(problem, shortest_path(problem), path)
+        judged = judgement.compute_judgement(problem, shortest_path(problem), path)
         plan = plan._replace(evaluations=evaluations)
         answers_read.append(
-            api.Answer(**judged, **answers.list_planner_fields(plan), method=str(file))
+            api.Answer(**judged, **judgement.list_planner_fields(plan), method=str(file))
         )
     return answers_read

@@ -6,12 +6,12 @@ from functools import partial
 from pathlib import Path
 
 from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
-from bezierplan.analysis.outcome import proof
+from bezierplan.analysis.outcome import verification
 from bezierplan.commands import count_cores, find_study_path, read_config
 from bezierplan.machine import opened_files
 from bezierplan.places import shorten_path
 from bezierplan.running import recheck
-from bezierplan.study import reading, stored
+from bezierplan.study import loading, stored
 from bezierplan.study.jobs import Studies
 
 # These jobs are not made again as a whole: their files do not follow from others, or take minutes.
@@ -51,20 +51,20 @@ def main(
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
     progress = partial(print, file=sys.stderr, flush=True)
     places = stored.read_places(folder, read_config(), map(find_study_path, studies))
-    config = proof.keep_studies(read_config(), [*places.values()])
-    at = stored.list_places(reading.load(reading.read_config(config)))
-    contents = proof.read_list(folder)
+    config = verification.keep_studies(read_config(), [*places.values()])
+    at = stored.list_places(loading.load(loading.read_config(config)))
+    contents = verification.read_list(folder)
     makers = stored.find_jobs(at, folder, contents.digests)
     changes = {
         file: _find_changes(makers.get(file), contents.accounts[file]) for file in contents.accounts
     }
     tasks = _list_tasks(at, makers, changes, folder)
     verdict = recheck.verify(tasks, cores, progress)
-    faults = [*proof.find_changed_files(folder, contents), *verdict.faults]
+    faults = [*verification.find_changed_files(folder, contents), *verdict.faults]
     again = recheck.run_again(tasks, {fault.file for fault in faults}, cores, verdict.digest, all_)
     progress(f"{again.runs} runs made again")
     follow = {name: not isinstance(makers[name], _KEPT) for name in makers}
-    files, others = proof.find_differences(folder, follow, config, contents.digests, cores)
+    files, others = verification.find_differences(folder, follow, config, contents.digests, cores)
     wrong: dict[str, recheck.Difference] = {}
     for fault in (*faults, *again.faults, *others):
         # One line for each file: its first fault. What cannot be made from it is no other one.
@@ -72,8 +72,8 @@ def main(
             wrong[fault.file] = fault
     left, versions = stored.find_strangers(folder, makers), recheck.read_versions()
     # The list holds all accounts, so that each change is one of its own.
-    names = set().union(*(changes[file] for file in changes if file != proof.LIST))
-    names = names or changes.get(proof.LIST, {f"no {proof.LIST} says by which"})
+    names = set().union(*(changes[file] for file in changes if file != verification.LIST))
+    names = names or changes.get(verification.LIST, {f"no {verification.LIST} says by which"})
     moved = [
         f"{name} {before} -> {versions.get(name)}"
         for name, before in contents.versions.items()

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from bezierplan.analysis.words import WORDS
+from bezierplan.analysis.legend import WORDS
 
 MOST_FINDINGS = 2
 

@@ -126,18 +126,13 @@ def build_single_alternatives(study: Study) -> dict[str, Study]:
     methods = {method for content in contents for method in content.methods}
     homes = {few.problems[name].workspace for content in contents for name in content.problems}
     return {DEFAULT: few} | {
-        name_folder(each.id, value): apply_values(few, {each.id: value})
+        re.sub(r"[^\w.+-]", "_", f"{each.id}_{value}"): apply_values(few, {each.id: value})
         for each in study.assumptions
         if methods.intersection(study.list_governed_methods(each))
         or homes.intersection(each.workspace)
         if not each.excluded_by
         for value in each.alternatives
     }
-
-
-def name_folder(identity: str, value: Any) -> str:
-    """Return the name of the folder with the results under an alternative."""
-    return re.sub(r"[^\w.+-]", "_", f"{identity}_{value}")
 
 
 def keep_claims(study: Study, claims: list[Claim]) -> Study:

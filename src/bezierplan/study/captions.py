@@ -23,6 +23,7 @@ def build_caption(study: Study, artefact: str, scale: str) -> Caption:
         for claim in study.claims
         if artefact in claim.artefacts and (claim.id in rows or claim.scale in (None, scale))
     ]
+    # Only the first of them are printed: sentences of the paper that can be tested go first.
     about.sort(key=lambda claim: (_is_untestable(claim), bool(claim.finding)))
     findings = [
         CaptionClaim(

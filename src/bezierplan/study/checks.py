@@ -36,7 +36,7 @@ from bezierplan.study import published
 from bezierplan.study.alternatives import apply_values, is_judged
 from bezierplan.study.claims import AssumptionEntry, ReadingEntry
 from bezierplan.study.definition import Study
-from bezierplan.study.design import Design, build_design, join_designs
+from bezierplan.study.design import build_design, join_designs
 from bezierplan.study.experiments import Experiment, Method, ProblemEntry, build_descriptions
 from bezierplan.study.jobs import build_chunk
 from bezierplan.workspaces import files
@@ -68,7 +68,12 @@ class Checks:
         self.words, self.broken_files = {"generation"}, set()
         self._place = ()
         self.design = cache(lambda experiment: build_design(self.study, experiment))
-        self.runs = cache(self._join_runs)
+        # The planned runs of experiments; for a claim, without those of baselines.
+        self.runs = cache(
+            lambda experiments, claim: join_designs(
+                [*map(self.design, experiments)], study.baselines if claim else ()
+            )
+        )
         self.build_problem = cache(self._build_problem)
         self.known = {
             "experiment": [*study.experiments],
@@ -173,28 +178,19 @@ class Checks:
         with self.at(shorten_path(study.folder / "layout.yaml")):
             sound = [name for name in study.layout if name not in self.invalid]
             check_all(sound, {**study.tables, **study.figures}, "layout")
-        for file, section, entries, work in (
-            ("claims", "claims", [(e.id, e) for e in study.claims], self.check_claim),
-            (
-                "assumptions",
-                "assumptions",
-                [(e.id, e) for e in study.assumptions],
-                self.check_assumption,
-            ),
-            (
-                "assumptions",
-                "readings",
-                [(e.folder, e) for e in study.readings],
-                self.check_reading,
-            ),
+        for file, section, key, work in (
+            ("claims", "claims", "id", self.check_claim),
+            ("assumptions", "assumptions", "id", self.check_assumption),
+            ("assumptions", "readings", "folder", self.check_reading),
         ):
             with self.at(shorten_path(study.folder / f"{file}.yaml")):
+                entries = getattr(study, section)
                 # Results are looked up by it.
-                names = [name for name, _ in entries]
+                names = [getattr(each, key) for each in entries]
                 for name in names:
                     if names.count(name) > 1:
                         raise Fault(f"{section}: {name}: another one has this id already")
-                self.check_entries(section, dict(entries), work)
+                self.check_entries(section, dict(zip(names, entries)), work)
         with self.at(shorten_path(study.folder / "assumptions.yaml"), "fitted"):
             check_all(study.fitted.keys() - self.invalid, study.find_published_tables(), "table")
             for table, fitted in study.fitted.items():
@@ -238,6 +234,7 @@ class Checks:
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
         used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
+        # Only now, since what a planner accepts is known once its file has been checked.
         self.known["setting"] = used
         if not self.complete:
             return
@@ -397,12 +394,6 @@ class Checks:
             if what in ("function", "world") and len(path) == 1:
                 self.check_arguments(self.known[what][name], getattr(model, "arguments", {}))
 
-    def _join_runs(self, experiments: tuple[str, ...], claim: bool) -> Design:
-        """Return the planned runs of experiments; for a claim, without those of baselines."""
-        return join_designs(
-            [self.design(each) for each in experiments], self.study.baselines if claim else ()
-        )
-
     def check_name_in_runs(
         self, experiments: tuple[str, ...], claim: bool, what: str, name: Any, key: str
     ) -> None:
@@ -431,14 +422,17 @@ class Checks:
         """Check that a function's keyword-only arguments are given, each of the type that its
         annotation says.
         """
-        accepted = {}
-        for name, parameter in inspect.signature(function).parameters.items():
-            if parameter.kind is parameter.KEYWORD_ONLY:
-                wanted = inspect.formatannotation(parameter.annotation)
-                accepted[name] = (
-                    parameter.annotation,
-                    Field(description=f"{wanted}, as the function declares"),
-                )
+        accepted = {
+            each.name: (
+                each.annotation,
+                Field(
+                    description=f"{inspect.formatannotation(each.annotation)}, as the function "
+                    "declares"
+                ),
+            )
+            for each in inspect.signature(function).parameters.values()
+            if each.kind is each.KEYWORD_ONLY
+        }
         parse(create_model("Arguments", __base__=Model, **accepted), arguments, "arguments")
 
     # artefacts.yaml
@@ -513,12 +507,12 @@ class Checks:
                 if isinstance(check, OfRuns):
                     self.check_unmixed(judged[number])
         experiments = {name: None for check in claim.checks for name in check.experiments}
+        known = {"metric": metrics.METRICS, "experiment": self.study.experiments}
         for column, entries in claim.variants.items():
             for value in (each for entry in entries for each in convert_to_list(entry)):
                 if value in self.invalid:
                     continue
-                if column in ("metric", "experiment"):
-                    known = {"metric": metrics.METRICS, "experiment": self.study.experiments}
+                if column in known:
                     check_known(value, known[column], f"variants: {column}")
                 elif experiments:
                     self.runs(tuple(experiments), True).check_where(

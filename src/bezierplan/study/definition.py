@@ -29,6 +29,9 @@ class Study(Experiments, ArtefactsFile):
     values: Mapping[str, Any] = {}
     """Assumption id -> value in place of the default (`alternatives.apply_values`)."""
 
+    # What follows from a study is kept by the study itself, whose fields are no keys of a mapping.
+    __hash__ = object.__hash__
+
     def list_governed_methods(self, assumption: AssumptionEntry) -> list[str]:
         """Return the methods whose setting an assumption governs: those that it names, otherwise
         all except baselines and variants.
@@ -87,7 +90,7 @@ class Study(Experiments, ArtefactsFile):
         if name in self.find_tables_of_runs():
             endings.append("comparison.csv")
         if name in self.find_published_tables():
-            endings += ["published.csv", "wholes.csv"]
+            endings += ["published.csv", "order_and_level.csv"]
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
     def find_tables_of_runs(self) -> dict[str, Pivot]:

@@ -120,6 +120,7 @@ def build_design(study: Study, experiment: str) -> Design:
     methods, moves = study.methods_of(experiment), study.moves(experiment)
     chunks = [build_chunk(study, experiment, method, "full", 0) for method in methods]
     rows = [identify_run(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
+    # As objects, because a column with gaps would turn 20 into 20.0, another value of a setting.
     frame = pd.DataFrame(rows, dtype=object).drop(columns="id")
     planners = () if moves else (load_planner(study.planner(method)) for method in methods)
     reported = {name: "reported" for each in planners for name in getattr(each, "extra", ())}

@@ -12,8 +12,6 @@ Rows = list[dict[str, str]]
 
 _LONG = 80
 """Most characters of a value in the table of settings."""
-_KEPT: dict[int, tuple[Study, list[str]]] = {}
-"""Changes of studies by `id`. Each study stays in memory here, so no other one gets its id."""
 
 
 def is_of_project(study: Study) -> bool:
@@ -45,17 +43,11 @@ def _read_table(name: str) -> Rows:
         return [*csv.DictReader(rows)]
 
 
+@cache
 def list_changes(study: Study) -> list[str]:
     """List in words the settings of a study that are not those of docs/outcome; none if it keeps
     none.
     """
-    if id(study) not in _KEPT:
-        _KEPT[id(study)] = study, _compare_settings(study)
-    return _KEPT[id(study)][1]
-
-
-def _compare_settings(study: Study) -> list[str]:
-    """List in words the settings that differ."""
     before = {(row["of"], row["setting"]): row["value"] for row in _read_rows(study, "settings")}
     now = {(of, name): value for of, name, value in list_settings(study)} if before else {}
     return [
@@ -79,6 +71,7 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
     for name, problem in study.problems.items():
         settings[f"problem {name}"] = problem.plain()
     for name, experiment in study.experiments.items():
+        # How many runs one job makes, and when one is given up, changes no run.
         settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
     settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
     settings["presets"] = study.presets

@@ -211,6 +211,14 @@ class FamilyEntry(Model):
         None, description="only the problems whose straight line from start to target is so"
     )
 
+    def has(self, experiment: str, problem: str, straight: bool) -> bool:
+        """Return whether a problem belongs here. straight: whether its straight line is free."""
+        return (
+            self.experiment == experiment
+            and (not self.problems or problem in self.problems)
+            and self.straight in (None, "free" if straight else "blocked")
+        )
+
 
 class BaselineEntry(Model):
     """The baseline with which the summary compares a study's methods."""

@@ -252,11 +252,20 @@ def build_latex(study: Study, scale: str, table: str) -> Latex:
 def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
     """Build the job that draws a figure."""
     spec, behind = study.figures[figure], list_methods(study, figure)
-    methods = {method for name in behind for method in study.methods_of(name)}
-    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
     every = study.every_problem() if spec.problems else {}
     problems = build_descriptions(study, {name: every[name] for name in spec.problems})
-    homes += problems.workspaces
+    maps = [*spec.workspaces, *problems.workspaces]
+    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
+    # Of a figure without runs and maps, any workspace has the unit.
+    unit = study.workspaces[[*homes, *maps, *study.workspaces][0]].unit
+    methods = {method for name in behind for method in study.methods_of(name)}
+    looks = choose_looks(study).items()
+    # Only some panels repeat runs, such as tracks; others read the stored ones.
+    again = {
+        name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
+        for name in spec.rerun
+    }
+    published = [file for file in study.list_published_files() if spec.draws(Path(file).stem)]
     return FigureFiles(
         caption=build_caption(study, figure, scale).write(),
         columns=spec.columns,
@@ -264,26 +273,15 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
         panels=spec.panels,
         layout=study.layout.get(figure),
         labels=build_labels(study, figure),
-        looks={
-            name: look
-            for name, look in choose_looks(study).items()
-            if spec.names_any or name in methods
-        },
+        looks={name: look for name, look in looks if spec.names_any or name in methods},
         workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
         problems=problems,
         repeats={name: study.experiments[name].repeats[scale] for name in behind},
-        chunks={
-            name: {method: build_chunk(study, name, method, scale, 0) for method in behind[name]}
-            # Only some panels repeat runs, such as tracks; others read the stored ones.
-            for name in spec.rerun
-        },
-        unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
+        chunks=again,
+        unit=unit,
         folder=shorten_path(study.folder),
         alternatives=_list_alternatives(study) if spec.claims else [],
-        sources=[
-            *study.maps([*spec.workspaces, *problems.workspaces]),
-            *(file for file in study.list_published_files() if spec.draws(Path(file).stem)),
-        ],
+        sources=[*study.maps(maps), *published],
         shows=find_results(study, figure, scale),
         code=study.code_for(*spec.code),
     )
@@ -291,15 +289,14 @@ def build_figure(study: Study, scale: str, figure: str) -> FigureFiles:
 
 def _list_alternatives(study: Study) -> list[dict[str, str]]:
     """Return a row for the default and for each single alternative: assumption, detail, value."""
-    details = {each.id: each.detail for each in study.assumptions}
     default = alternatives.DEFAULT
-    rows = [{"assumption": default, "detail": "The reading behind all tables", "value": default}]
-    for own in alternatives.build_single_alternatives(study).values():
-        rows += [
-            {"assumption": name, "detail": details[name], "value": str(value)}
-            for name, value in own.values.items()
-        ]
-    return rows
+    details = {default: "The reading behind all tables"}
+    details |= {each.id: each.detail for each in study.assumptions}
+    return [
+        {"assumption": name, "detail": details[name], "value": str(value)}
+        for own in alternatives.build_single_alternatives(study).values()
+        for name, value in (own.values or {default: default}).items()
+    ]
 
 
 # --------------------------------------------------------------------------------------------------
@@ -317,13 +314,12 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
     own, other = (
         build_problems_job(each, experiment, scale).workspaces for each in (study, default)
     )
-    if any(other[name] != home for name, home in own.items()):
-        return False
-    if not method:
-        return True
+    # A reading has fewer problems than the default, so its workspaces are some of these.
+    alike = own.items() <= other.items()
+    if not method or not alike:
+        return alike
     made, known = (build_chunk(each, experiment, method, scale, 0) for each in (study, default))
-    places = all(known.problems[name] == place for name, place in made.problems.items())
-    return places and made.settings == known.settings
+    return made.settings == known.settings and made.problems.items() <= known.problems.items()
 
 
 def build_claims(study: Study, scale: str) -> Claims:
@@ -389,7 +385,7 @@ def build_methods(studies: Studies, scale: str) -> MethodsTable:
     for key, study in studies.items():
         if not (beside := study.baseline_comparison):
             continue
-        proposed[key], families[key] = beside.proposed, beside.plain().get("families", {})
+        proposed[key], families[key] = beside.proposed, beside.families
         for name in beside.experiments:
             methods = [*study.experiments[name].methods, beside.baseline]
             repeats[f"{key}/{name}"] = study.experiments[name].repeats[scale]

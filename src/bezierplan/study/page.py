@@ -82,18 +82,20 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         )
         for name in list_artefacts(study, scale, root)
     }
+    methods = {
+        name: MethodView(
+            study.planner(name),
+            study.resolve_settings(name),
+            read_docstring(name_module(study.planner(name))),
+        )
+        for name in study.methods
+    }
+    answers = evidence.read_kept(study, "texts")
     return StudyView(
         title=study.title,
         paper=study.paper,
         labels=study.labels,
-        methods={
-            name: MethodView(
-                study.planner(name),
-                study.resolve_settings(name),
-                read_docstring(name_module(study.planner(name))),
-            )
-            for name in study.methods
-        },
+        methods=methods,
         claims={claim.id: claim for claim in study.claims},
         repeats=_count_repeats(study, scale),
         tables={name: each for name, each in artefacts.items() if name in study.tables},
@@ -110,9 +112,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
             for name, content in study.experiments.items()
         },
-        answer=next(
-            ((row["title"], row["text"]) for row in evidence.read_kept(study, "texts")), None
-        ),
+        answer=(answers[0]["title"], answers[0]["text"]) if answers else None,
     )
 
 

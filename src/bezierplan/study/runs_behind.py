@@ -43,6 +43,7 @@ def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]
+        # A panel may show single repeats.
         listed = max(len(convert_to_list(where.get("repeat", []))) for where in own)
         repeats, layouts = listed or content.repeats[scale], count_layouts(study, experiment, scale)
         told.append(

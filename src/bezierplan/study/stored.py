@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job, Verification
-from bezierplan.analysis.outcome.proof import LIST, PAGE
+from bezierplan.analysis.outcome.verification import LIST, PAGE
 from bezierplan.places import shorten_path
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import alternatives, jobs, page, reading
+from bezierplan.study import alternatives, jobs, loading, page
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
@@ -79,7 +79,7 @@ def yield_jobs(
             continue
         yield from ((job, [f"{own_place}/{file}" for file in files]) for job, files in parts)
     yield jobs.build_methods(studies, scale), ["methods.csv"]
-    yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "wholes.csv"]
+    yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "order_and_level.csv"]
     yield page.build_page(studies, scale, root), [PAGE]
 
 
@@ -133,6 +133,7 @@ def build_verification(
     accounts = [
         (own, job.key, job.account)
         for job, own in yield_jobs(places, scale, below, root)
+        # The page holds the digest of the list, so it is no file of the list; its account is.
         if own == [PAGE] or not {*own}.isdisjoint(files)
     ]
     words = {
@@ -154,6 +155,7 @@ def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str
     below = [place for place in places if (folder / place).is_dir()]
     job_of = {
         file: job
+        # The later jobs win: files above the studies are those of the studies on the page.
         for studies in (places, on_page)
         for job, job_files in yield_jobs(studies, scale, below, root)
         for file in job_files
@@ -169,7 +171,7 @@ def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> d
     FileNotFoundError if there are no runs.
     """
     named = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
-    on_page = reading.read_page_studies(folder).items()
+    on_page = loading.read_page_studies(folder).items()
     words_by_key = {
         key: word for key, word in on_page if Path(word, "experiments.yaml").is_file()
     } | named

@@ -1,10 +1,6 @@
 """A paper's own numbers checked against each other and against exact bounds: contradictions that
 need no runs.
 
-Columns: study, item (table or text), place (which cell), rule (in words), printed, limit,
-consistent (whether the number obeys the rule; empty if the rule cannot tell), arithmetic (of the
-rules that hold for any paper: how the number was checked).
-
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
 (`metrics.Metric`): `check_statistics` checks the statistics of one cell, `check_ranks` mean ranks,
 `check_orders` the order of rows, `check_middles` means of lengths within their ranges,
@@ -22,7 +18,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import identified, possible
-from bezierplan.analysis.audit.rows import COLUMNS, build_audit_row, describe_cell, merge_rows
+from bezierplan.analysis.audit.rows import build_audit_row, describe_cell, merge_rows
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import group_rows, list_key_columns, read_printed_numbers
 from bezierplan.analysis.table_kinds import Monotone, Pivot
@@ -286,6 +283,7 @@ def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         column for column in every if column not in ("statistic", "value", "as_printed", "unit")
     ]
     for n, own in every.groupby("n"):
+        # As text, because a pivot would lose rows in which a key is empty.
         filled = own.astype(dict.fromkeys(keys, str))
         wide = filled.pivot_table("value", keys, "statistic")
         wide = wide.reindex(columns=["min", "mean", "max"]).dropna()
@@ -350,7 +348,7 @@ def check_paper(
     experiment_files: Mapping[str, Files],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
-    """Check all printed numbers of a paper and return its audit, a table with `COLUMNS`.
+    """Check all printed numbers of a paper and return its audit, a table.
 
     job: the job (`jobs.Audit`). of_paper: the rules for this paper alone. experiment_files: by
     experiment. files: of published numbers, by table.
@@ -371,5 +369,5 @@ def check_paper(
 
 
 def build_audit(study: str, rows: list[dict]) -> pd.DataFrame:
-    """Build a table with `COLUMNS` from the rows of a study's audit."""
-    return pd.DataFrame([{"study": study, **row} for row in rows], columns=COLUMNS)
+    """Build the table from the rows of a study's audit."""
+    return pd.DataFrame([{"study": study, **row} for row in rows], columns=COLUMNS_OF["audit"])

@@ -32,9 +32,6 @@ NEARBY = 0.05
 place.
 """
 
-UNLIKELY = 0.1
-"""A number counts as identified if chance matches less than this share of the numbers nearby."""
-
 MOST_SHOWN = 4
 
 MOST_PATHS = 10_000
@@ -92,14 +89,6 @@ def list_edges(grid: Grid) -> Ways:
     return Ways(cells, lengths)
 
 
-def is_declared(entry: Identify, row: dict) -> bool:
-    """Return whether an enumeration is declared for a published number, given as its row."""
-    where = {"metric": entry.metric} | entry.where
-    if entry.statistic:
-        where["statistic"] = entry.statistic
-    return all(row.get(column) in convert_to_list(wanted) for column, wanted in where.items())
-
-
 def find_polylines(
     problem: Problem, value: float, decimals: int, edges: int
 ) -> Identification | None:
@@ -145,6 +134,7 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     apart = [round(abs(b - a) / cell) for a, b in zip(problem.start, problem.target)]
     places = possible.count_decimals(str(diagonal))
     unit, value = 10.0**-places, value / cell
+    # A quotient of decimals may lie just below the whole number that it stands for.
     printed = math.floor(value / unit + _ROUNDING) * unit
     most = int(value + NEARBY) + 1
     moves = [
@@ -160,15 +150,6 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     return Identification(
         paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:"
     )
-
-
-def find_paths(
-    entry: Identify, problem: Problem, value: float, decimals: int
-) -> Identification | None:
-    """Find the paths that a declaration names and whose length is printed as this value."""
-    if entry.diagonal is None:
-        return find_polylines(problem, value, decimals, entry.edges)
-    return find_moves(problem, value, entry.diagonal)
 
 
 def describe_paths(identification: Identification) -> str:
@@ -194,7 +175,8 @@ def check_declared_paths(
     """
     keys = list_key_columns(published)
     for entry in entries:
-        tries = []
+        tries, named = [], {"statistic": entry.statistic} if entry.statistic else {}
+        where = entry.where | named
         what = (
             f"a free polyline of at most {entry.edges} edges through cell centres"
             if entry.diagonal is None
@@ -203,17 +185,21 @@ def check_declared_paths(
         rule = f"{entry.because}: the length of {what}"
         for row in published.to_dict("records"):
             problem = problems.get(row.get("problem", row.get("workspace")))
-            if not is_declared(entry, row) or problem is None:
-                continue
-            path = find_paths(
-                entry, problem, row["value"], possible.count_decimals(row["as_printed"])
+            declared = all(
+                row.get(column) in convert_to_list(wanted)
+                for column, wanted in [("metric", entry.metric), *where.items()]
             )
+            if not declared or problem is None:
+                continue
+            if entry.diagonal is None:
+                decimals = possible.count_decimals(row["as_printed"])
+                path = find_polylines(problem, row["value"], decimals, entry.edges)
+            else:
+                path = find_moves(problem, row["value"], entry.diagonal)
             if path is None:
                 continue
             tries.append(path)
-            location = describe_cell(
-                row, [*keys, "metric", *(["statistic"] if entry.statistic else [])]
-            )
+            location = describe_cell(row, [*keys, "metric", *named])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
             yield build_audit_row(
                 item, location, rule, row["value"], limit, fits, describe_paths(path)
@@ -226,8 +212,7 @@ def check_declared_paths(
             )
             location = ", ".join(
                 f"{key}={' or '.join(map(str, convert_to_list(wanted)))}"
-                for key, wanted in (entry.where | {"statistic": entry.statistic}).items()
-                if wanted
+                for key, wanted in where.items()
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tries) or None
             yield build_audit_row(item, location, rule, matched, len(tries), fits, told)
@@ -278,31 +263,23 @@ def _trace_paths(
     """Trace the matching polylines with fewest edges backwards from their ends; return the places
     of their cells.
     """
+
+    def extend(left: int, path: tuple[int, ...], length: float) -> Iterator[tuple[int, ...]]:
+        """Extend a path, given from its end, in all ways that leave the rest of its length
+        reachable with `left` more edges.
+        """
+        if not left:
+            yield path[::-1]
+            return
+        for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
+            rest = length - ways.lengths[path[-1], other]
+            if _is_near(levels[left - 1][other], rest, half).any():
+                yield from extend(left - 1, (*path, int(other)), rest)
+
     for edges in range(1, len(levels)):
         if _is_near(levels[edges][last], printed, half).any():
-            walks = _extend_path(ways, levels, edges, (last,), printed, half)
-            return list(itertools.islice(walks, MOST_PATHS))
+            return list(itertools.islice(extend(edges, (last,), printed), MOST_PATHS))
     return []
-
-
-def _extend_path(
-    ways: Ways,
-    levels: list[list[np.ndarray]],
-    left: int,
-    path: tuple[int, ...],
-    length: float,
-    half: float,
-) -> Iterator[tuple[int, ...]]:
-    """Extend a path, given from its end, in all ways that leave the rest of its length reachable
-    with `left` more edges.
-    """
-    if not left:
-        yield path[::-1]
-        return
-    for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
-        rest = length - ways.lengths[path[-1], other]
-        if _is_near(levels[left - 1][other], rest, half).any():
-            yield from _extend_path(ways, levels, left - 1, (*path, int(other)), rest, half)
 
 
 def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
@@ -313,9 +290,8 @@ def _is_near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
 
 def _compute_chance(lengths: np.ndarray, printed: float, half: float) -> float:
     """Compute the share of the printed numbers within `NEARBY` to which some length rounds."""
-    numbers = printed + 2 * half * np.arange(
-        -round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1
-    )
+    count = round(NEARBY / (2 * half))
+    numbers = printed + 2 * half * np.arange(-count, count + 1)
     at = np.searchsorted(lengths, numbers)
     padded = np.concatenate([[-np.inf], lengths, [np.inf]])
     return float(np.mean(np.minimum(numbers - padded[at], padded[at + 1] - numbers) <= half + 1e-7))

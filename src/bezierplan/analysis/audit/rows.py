@@ -3,7 +3,7 @@
 import operator
 from collections.abc import Iterable, Mapping
 
-COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
+from bezierplan.analysis.columns import COLUMNS_OF
 
 RELATIONS = {
     "<": operator.lt,
@@ -28,11 +28,11 @@ def build_audit_row(
     consistent: bool | None,
     arithmetic: str = "",
 ) -> dict:
-    """Build a row of an audit, with `COLUMNS` but for the study. consistent: None if the rule
+    """Build a row of an audit, with all columns but for the study. consistent: None if the rule
     cannot tell.
     """
     values = (item, location, rule, printed, float(limit), consistent, arithmetic)
-    return dict(zip(COLUMNS[1:], values, strict=True))
+    return dict(zip(COLUMNS_OF["audit"][1:], values, strict=True))
 
 
 def merge_rows(rows: Iterable[dict]) -> list[dict]:

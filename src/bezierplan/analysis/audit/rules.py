@@ -20,10 +20,13 @@ from bezierplan.analysis.audit.rows import compare_with_limit, merge_rows
 
 
 def check_rules(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """Check the rules that a study's file lists, and return the rows of the audit.
+    """Check the rules that a study's file lists, and return the rows of the audit;
+    none without such a file.
 
     published: tables of printed numbers, by file name, with the rules.
     """
+    if "rules" not in published:
+        return []
     # A rule may leave these out: its cell is then its place, and the factor 1.
     rules = published["rules"].fillna({"cell": "", "of": "", "limit": 1.0})
     return merge_rows(

@@ -18,6 +18,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.columns import COLUMNS_OF
 
 DEFAULT = "default"
 SIDES = {"supported": "holds", "partly": "holds", "contradicted": "fails", "no effect": "nothing"}
@@ -27,20 +28,9 @@ MOST_NAMED = 3
 AGAINST = ["-", "0", "?", "+"]
 """Marks, those first that speak against a claim."""
 
-COLUMNS = [
-    *("study", "id", "check", "reading", "verdict", "verdict_on_check", "holds"),
-    *("place", "group", "relation", "other", "metric", "unit", "scale"),
-    *("effect", "low95", "high95"),
-]
-"""Columns of claims by reading: the verdict on the whole claim, and on the check; how many of its
-comparisons are +; and the comparison that speaks most against it.
-"""
-
 
 class ClaimTables(NamedTuple):
-    """The claims and checks of a study under one reading, with `columns.CLAIM_COLUMNS` and
-    `columns.CHECK_COLUMNS`.
-    """
+    """The claims and checks of a study under one reading (`judge.judge_claims`)."""
 
     claims: pd.DataFrame
     checks: pd.DataFrame
@@ -68,6 +58,7 @@ def add_dependence(
     claims = claims.assign(readings="")
     primary, decided = claims["primary"].astype(bool), claims["verdict"].isin(SIDES)
     for index, claim in claims[primary].iterrows():
+        # A reading judges the claims that it names, or the main ones, not all.
         own = {name: each[claim["id"]] for name, each in under.items() if claim["id"] in each}
         claims.loc[index, "readings"] = "; ".join(
             f"{verdict} under {', '.join(name for name in own if own[name] == verdict)}"
@@ -101,13 +92,14 @@ def _join_names(names: list[str]) -> str:
 
 
 def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
-    """List each primary check of each claim under each reading, with `COLUMNS`."""
+    """List each primary check of each claim under each reading, as a table."""
     modes, rows = {claim.id: claim.holds for claim in claims}, []
     for name, (judged, checks) in readings.items():
         first = judged.loc[judged["primary"].astype(bool), ["id", "variant", "verdict"]]
         compared = checks[checks["primary"].astype(bool)].merge(first, on=["id", "variant"])
         for (claim, _), own in compared.groupby(["id", "check"], sort=False):
             marks, in_family = own["mark"].to_list(), own["mark_family"].to_list()
+            # The first of those that speak most against the claim, in the order of the checks.
             against = own.iloc[min(range(len(own)), key=lambda row: AGAINST.index(marks[row]))]
             rows.append(
                 against.to_dict()
@@ -117,4 +109,4 @@ def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) ->
                     "holds": f"{marks.count('+')} of {len(marks)}",
                 }
             )
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.DataFrame(rows, columns=COLUMNS_OF["claims_by_reading"])

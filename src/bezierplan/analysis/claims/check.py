@@ -100,8 +100,6 @@ class ClaimCheck(Model):
         None, description="true: shown, but not counted for the verdict; left out otherwise"
     )
 
-    _reported: bool = PrivateAttr(False)
-
     def __getattr__(self, key: str) -> Any:
         """Return the neutral value of a key that only other kinds have."""
         return _NEUTRAL[key] if key in _NEUTRAL else super().__getattr__(key)
@@ -109,18 +107,7 @@ class ClaimCheck(Model):
     @property
     def primary(self) -> bool:
         """Return whether it counts for the verdict."""
-        return not (self._reported or self.secondary)
-
-    def report_only(self) -> Self:
-        """Return a copy of the check that is shown and does not count for the verdict."""
-        check = self.but()
-        check._reported = True
-        return check
-
-    @property
-    def statistic_shown(self) -> str:
-        """Return the statistic that is compared; empty for a kind without a choice."""
-        return self.statistic or "rank" if "statistic" in type(self).model_fields else ""
+        return not self.secondary
 
     @property
     def timed(self) -> bool:

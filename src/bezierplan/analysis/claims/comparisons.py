@@ -5,7 +5,6 @@ the same cells.
 import itertools
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -112,7 +111,16 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     paired = check.paired
     # Equal units belong together if they share a start or a random workspace.
     if paired is None:
-        paired = _has_shared_draws(check, material)
+        paired = "replicate" in check.model_fields_set or all(
+            material.study.paired.get(name, False) for name in check.experiments
+        )
+    metric_runs = material.results[check.experiments[0]].runs
+    # Averaged over the runs of a unit, a boolean is a number like others.
+    boolean = (
+        unit == "repeat"
+        and check.metric in metric_runs
+        and pd.api.types.is_bool_dtype(metric_runs[check.metric])
+    )
     comparison_list = []
     for condition, rows in _split(runs, every):
         unit_tables = {
@@ -144,12 +152,16 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
             comparison_list.append(
                 Contrast(
                     terms=terms,
-                    place=tuple((key, _replace_nan(rows[key].iloc[0])) for key in every),
+                    # NaN does not equal itself, so a text takes its place.
+                    place=tuple(
+                        (key, "nan" if (value := rows[key].iloc[0]) != value else value)
+                        for key in every
+                    ),
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
-                    boolean=_is_boolean(check, material),
+                    boolean=boolean,
                     paired=paired,
                     note=_note_success_rates(check, rows, column, cells),
                     conditions=int(pooled),
@@ -184,8 +196,14 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
             runs = select(runs, conditions)
         if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
             raise Untestable(f"the runs of {name} have no {check.metric}")
-        counting = _select_groups(runs, check)
-        counting = _pick_runs(counting, check.pick.plain()) if check.pick else counting
+        counting = runs
+        # Runs that a metric ranks among each other need those of all groups.
+        if check.groups_named and not metrics.METRICS[check.metric].among_rows:
+            counting = runs[runs[check.cells].isin(check.groups_named)]
+        if check.pick:
+            of_method = counting.groupby(_FACTORS)
+            picked = [pick(own, check.pick.plain()) for _, own in of_method]
+            counting = counting.loc[[run.name for run in picked if run is not None]]
         values = metrics.compute_values(counting, check.metric, problems).fillna(
             _choose_failure_value(check)
         )
@@ -204,26 +222,6 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
         # A share counts each run once.
         frames.append(runs if check.cells else runs[~is_repeated(runs)])
     return pd.concat(frames, ignore_index=True)
-
-
-def _select_groups(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
-    """Select the runs of the groups that a check names; all runs for a metric that ranks them among
-    each other.
-    """
-    groups = check.groups_named
-    return (
-        runs[runs[check.cells].isin(groups)]
-        if groups and not metrics.METRICS[check.metric].among_rows
-        else runs
-    )
-
-
-def _pick_runs(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
-    """Pick one run of each condition and method that has a feasible one."""
-    chosen = [
-        pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])
-    ]
-    return runs.loc[[run.name for run in chosen if run is not None]]
 
 
 def _choose_failure_value(check: OfRuns) -> float:
@@ -256,11 +254,6 @@ def find_mixed_factor(check: OfRuns, runs: pd.DataFrame) -> str:
     return next((factor for factor in factors if several[factor].nunique() > 1), "")
 
 
-def _replace_nan(value: Any) -> Any:
-    """Replace NaN in a place by the text `nan`, which equals itself."""
-    return "nan" if value != value else value
-
-
 def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yield the rows of each combination of values of the columns, with its name, sorted."""
     if not columns:
@@ -280,23 +273,6 @@ def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.Data
     return rows.groupby([unit, column])["value"].mean().unstack(column)
 
 
-def _is_boolean(check: OfRuns, material: Material) -> bool:
-    """Return whether the metric is a boolean column, not averaged over the runs of a unit."""
-    runs = material.results[check.experiments[0]].runs
-    return (
-        check.replicate == "repeat"
-        and check.metric in runs
-        and pd.api.types.is_bool_dtype(runs[check.metric])
-    )
-
-
-def _has_shared_draws(check: OfRuns, material: Material) -> bool:
-    """Return whether units with the same number share a random workspace or a start."""
-    return "replicate" in check.model_fields_set or all(
-        material.study.paired.get(name, False) for name in check.experiments
-    )
-
-
 def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
     """Return a note if two groups are compared on their successful runs but differ in success rate
     (Fisher's exact test); otherwise an empty text.
@@ -309,8 +285,6 @@ def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, c
         return ""
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
-    if not any(failed for _, failed in counts):
-        return ""  # both always succeed
     from scipy import stats
 
     return (

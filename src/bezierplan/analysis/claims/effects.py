@@ -19,7 +19,7 @@ import numpy as np
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims.check import OfRuns, PublishedMargin
 from bezierplan.analysis.claims.kinds import load_kind
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, WITHOUT_INTERVAL
 from bezierplan.workspaces.seeds import generator
 
 ALPHA = 0.05
@@ -86,6 +86,18 @@ class Contrast(NamedTuple):
     def seed(self) -> str:
         """Return the name of its place, by which random draws are seeded."""
         return ", ".join(f"{column}={value}" for column, value in self.place)
+
+    def list_values(self, finite: bool = False) -> list[list[np.ndarray]]:
+        """List the values of each cell, by condition; if paired, only of units with a value in
+        every cell. finite: without infinite values, so that they can be averaged.
+        """
+        listed = []
+        for values in self.strata.values():
+            known = np.isfinite(values) if finite else ~np.isnan(values)
+            if self.paired:
+                known[:] = known.all(axis=1, keepdims=True)
+            listed.append([cell[counts] for cell, counts in zip(values.T, known.T)])
+        return listed
 
     @property
     def counted(self) -> str:
@@ -215,13 +227,6 @@ def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarra
         return load_kind(check).EFFECT.of(check, points, cells)
 
 
-def compute_our_effect(check: OfRuns, comparison: Contrast) -> float:
-    """Compute the effect of the statistic of our values."""
-    return float(
-        compute_effect(check, compute_points(comparison, choose_statistic(check)), comparison.cells)
-    )
-
-
 def is_as_claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Return whether an effect is as the claim says, by its value alone."""
     return load_kind(check).EFFECT.holds(check, effects, margin)
@@ -240,13 +245,8 @@ def compute_margin(check: OfRuns, comparison: Contrast) -> float:
     published_margin = margin.published
     # Relative effects and those of booleans are shares already.
     if not check.relative and not comparison.boolean:
-        published_margin *= abs(
-            float(
-                compute_points(comparison, choose_statistic(check))[
-                    load_kind(check).EFFECT.reference
-                ]
-            )
-        )
+        points = compute_points(comparison, choose_statistic(check))
+        published_margin *= abs(float(points[load_kind(check).EFFECT.reference]))
     printed = compute_effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.direction, np.sign(printed)) > 0
     return min(published_margin, float(abs(printed))) if as_claimed else published_margin
@@ -261,30 +261,11 @@ def choose_statistic(check: OfRuns) -> str:
 # Values of units, statistics of cells, and their bootstrap.
 
 
-def select_counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """Select the values of each cell of a condition (units, k); if paired, only of units with a
-    value in every cell.
-    """
-    if paired:
-        return list(stratum[~np.isnan(stratum).any(axis=1)].T)
-    return [values[~np.isnan(values)] for values in stratum.T]
-
-
-def select_finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """Select the values of each cell that can be averaged, like `select_counted` without infinite
-    ones.
-    """
-    return select_counted(np.where(np.isinf(stratum), np.nan, stratum), paired)
-
-
 def compute_points(comparison: Contrast, statistic: str) -> np.ndarray:
     """Compute a named statistic of each cell (k,), averaged over the conditions."""
     points = [
-        [
-            statistics.compute_statistic(statistic, values)
-            for values in select_finite(stratum, comparison.paired)
-        ]
-        for stratum in comparison.strata.values()
+        [statistics.compute_statistic(statistic, values) for values in cells]
+        for cells in comparison.list_values(finite=True)
     ]
     return np.mean(points, axis=0)
 
@@ -300,8 +281,9 @@ def draw_points(
     counted units as ours; None to draw as many as there are.
     """
     total = np.zeros((statistics.DRAWS, len(comparison.cells)))
-    for stratum_name, stratum in comparison.strata.items():
-        for number, values in enumerate(select_finite(stratum, comparison.paired)):
+    conditions = zip(comparison.strata.items(), comparison.list_values(finite=True))
+    for (stratum_name, stratum), cells in conditions:
+        for number, values in enumerate(cells):
             if not len(values):
                 total[:, number] = np.nan
                 continue
@@ -329,27 +311,22 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
     ):
         # Resampling says nothing about events that never happened (module docstring).
         adjusted = [
-            _compute_adjusted_difference(
-                *select_counted(stratum, comparison.paired), comparison.paired
-            )
-            for stratum in comparison.strata.values()
+            _compute_adjusted_difference(*cells, comparison.paired)
+            for cells in comparison.list_values()
         ]
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.compute_normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
     ours = compute_points(comparison, statistic)
     gradient = load_kind(check).EFFECT.gradient(check, ours, comparison.cells)
     # The normal approximation needs many values in every cell.
-    if gradient is None or any(
-        len(v) <= MOST_RESAMPLED
-        for s in comparison.strata.values()
-        for v in select_finite(s, comparison.paired)
-    ):
+    conditions = comparison.list_values(finite=True)
+    if gradient is None or any(len(v) <= MOST_RESAMPLED for cells in conditions for v in cells):
         return compute_effect(check, draw_points(comparison, statistic, name), comparison.cells)
     variance = 0.0
-    for stratum in comparison.strata.values():
+    for cells in conditions:
         moved = [
             g * statistics.compute_influence(statistic, values)
-            for g, values in zip(gradient, select_finite(stratum, comparison.paired))
+            for g, values in zip(gradient, cells)
         ]
         # Paired cells vary together, so their influences are added unit by unit.
         parts = [np.sum(moved, axis=0)] if comparison.paired else moved
@@ -380,28 +357,39 @@ def _compute_adjusted_difference(
     )
 
 
-def judge_by_draws(check: OfRuns, comparison: Contrast, name: str) -> Finding:
+def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Finding, np.ndarray]:
+    """Measure the effect of two cells, and return it with its draws. The finding has a mark where
+    no test follows: there are too few units, or the sentence is about extremes.
+    """
+    points = compute_points(comparison, choose_statistic(check))
+    ours = float(compute_effect(check, points, comparison.cells))
+    n = count_units(comparison)
+    if reason := explain_too_few(comparison):
+        return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
+    margin = compute_margin(check, comparison)
+    finding = Finding(ours, "difference", ours, n=n, margin=margin)
+    if choose_statistic(check) in WITHOUT_INTERVAL:
+        return _judge_by_draws(check, comparison, name, finding), np.empty(0)
+    draws = draw_effects(check, comparison, name)
+    low, high = compute_interval_of_draws(draws)
+    return finding._replace(low95=low, high95=high), draws
+
+
+def _judge_by_draws(check: OfRuns, comparison: Contrast, name: str, finding: Finding) -> Finding:
     """Judge a sentence about extremes by how often it holds in experiments of the paper's size,
     drawn from our runs.
     """
-    statistic = choose_statistic(check)
-    ours = compute_our_effect(check, comparison)
-    margin, n = compute_margin(check, comparison), count_units(comparison)
-    finding = Finding(
-        effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
-    )
+    size = comparison.paper_units
     # Extremes depend on the number of runs.
-    if comparison.paper_units is None:
+    if size is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
-    effects = compute_effect(
-        check, draw_points(comparison, statistic, name, comparison.paper_units), comparison.cells
-    )
-    held = np.mean(is_as_claimed(check, effects, margin))
+    draws = draw_points(comparison, choose_statistic(check), name, size)
+    effects = compute_effect(check, draws, comparison.cells)
+    held = np.mean(is_as_claimed(check, effects, finding.margin))
     return finding._replace(
         mark=mark_share(held),
-        chance_known=n >= ENOUGH * comparison.paper_units,
-        reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
-        "drawn from ours",
+        chance_known=finding.n >= ENOUGH * size,
+        reason=f"holds in {100 * held:.3g} % of experiments of {size} runs drawn from ours",
     )
 
 
@@ -446,22 +434,19 @@ def explain_no_difference(low: float, high: float, n: int) -> str:
 
 def count_units(comparison: Contrast) -> int:
     """Count the units of the smallest cell, over all conditions."""
-    sizes = [
-        [len(values) for values in select_counted(stratum, comparison.paired)]
-        for stratum in comparison.strata.values()
-    ]
+    sizes = [[*map(len, cells)] for cells in comparison.list_values()]
     return min(map(sum, zip(*sizes)))
 
 
 def explain_too_few(comparison: Contrast) -> str:
     """Explain why a comparison says nothing; empty if it may say something."""
-    for stratum in comparison.strata.values():
+    for stratum, counted in zip(comparison.strata.values(), comparison.list_values()):
         for cell, values in zip(comparison.cells, stratum.T):
             if np.isnan(values).all():
                 return f"no run of {cell} counts"
         if np.isinf(stratum[~np.isnan(stratum)]).all():
             return "no run succeeded"
-        if min(map(len, select_counted(stratum, comparison.paired))) < LEAST_RUNS:
+        if min(map(len, counted)) < LEAST_RUNS:
             return f"fewer than {LEAST_RUNS} units"
     return ""
 

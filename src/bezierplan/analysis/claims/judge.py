@@ -35,8 +35,8 @@ A sentence about seconds is judged on counted work if its check names one (`work
 reported next to it, and the reason says where they disagree. If it names none, the seconds decide:
 the planners are then of different kinds, whose evaluations are different things.
 
-`columns` describes the columns of the two tables: claims.csv, one row per claim and variant, and
-claim_checks.csv, one row per comparison.
+`analysis.columns` describes the columns of the two tables: claims.csv, one row per claim and
+variant, and claim_checks.csv, one row per comparison.
 """
 
 import json
@@ -49,7 +49,6 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Finding, MarkedComparison, Terms
 from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Material, Untestable
@@ -59,10 +58,12 @@ from bezierplan.analysis.claims.variants import (
     name_variant,
     split_work,
 )
+from bezierplan.analysis.columns import COLUMNS_OF
 
 
 def judge_claims(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Judge the claims of a study; return tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
+    """Judge the claims of a study; return the tables `claims` and
+    `claim_checks`.
 
     All random draws are seeded by names, and nothing depends on the order of the runs. Raises Fault
     for a claim that mixes runs of several conditions or names an unknown function.
@@ -75,8 +76,9 @@ def judge_claims(material: Material) -> tuple[pd.DataFrame, pd.DataFrame]:
             row, details = _judge_variant(claim, first, assignment, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
-    claims = pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"})
-    checks = pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    # Int64, because a column of whole numbers with gaps would be written as decimals.
+    claims = pd.DataFrame(claim_rows, columns=COLUMNS_OF["claims"]).astype({"n": "Int64"})
+    checks = pd.DataFrame(check_rows, columns=COLUMNS_OF["claim_checks"])
     return claims, checks.astype({"together": "Int64", "conditions": "Int64"})
 
 
@@ -97,6 +99,7 @@ def _judge_variant(
     judgements, obstacle = _judge_checks(checks, claim, "/".join(key.values()), material)
     deciding = [entry for entry in judgements if entry.primary]
     decisive = None if obstacle else _select_decisive(deciding, claim.holds)
+    held = [held for _, held in map(_judge_printed, deciding) if held is not None]
     row = key | {
         "place": claim.place,
         "statement": claim.statement,
@@ -105,7 +108,7 @@ def _judge_variant(
         "main": bool(claim.main),
         "own_criterion": claim.criterion is not None,
         "timed": any(split_work(check)[0].timed for check in checks if check.primary),
-        "published": _count_published(deciding),
+        "published": f"{sum(held)} of {len(held)}" if held else "not printed",
     }
     if decisive:
         row |= _describe_verdict(claim, judgements, deciding, decisive, material)
@@ -282,12 +285,6 @@ def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     ), held
 
 
-def _count_published(deciding: list[MarkedComparison]) -> str:
-    """Count in how many of the printed comparisons the sentence holds, in words."""
-    held = [held for _, held in map(_judge_printed, deciding) if held is not None]
-    return f"{sum(held)} of {len(held)}" if held else "not printed"
-
-
 # Rows.
 
 
@@ -313,7 +310,10 @@ def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
             "test": check.test,
             "experiments": ", ".join(check.experiments),
             "metric": check.metric,
-            "statistic": check.statistic_shown,
+            # A kind without a choice of statistics has none to show.
+            "statistic": (check.statistic or "rank")
+            if "statistic" in type(check).model_fields
+            else "",
             "unit": _find_unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,

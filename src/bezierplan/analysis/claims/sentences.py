@@ -5,12 +5,10 @@ where it holds, and notes. Files, page, site and reports say what is made here, 
 There is a template for each kind of test (`kinds`).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,13 +16,10 @@ from bezierplan.analysis.claims import variants
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
-from bezierplan.analysis.claims.kinds import share
+from bezierplan.analysis.claims.kinds import equal_within, function, share, trend
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.analysis.naming import format_amount, format_number, name_column
+from bezierplan.analysis.naming import Labels, format_amount, format_number, name_column
 from bezierplan.schema.model import convert_to_list, is_number
-
-if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import equal_within, function, trend
 
 Row = dict[str, Any]
 
@@ -50,7 +45,7 @@ class PrintedTerms(NamedTuple):
     place: str
 
 
-def name_terms(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> PrintedTerms:
+def name_terms(row: Row, check: ClaimCheck | None, labels: Labels) -> PrintedTerms:
     """Name the groups and the place of a row of claim_checks.csv, None where it is empty."""
     place = describe_place(json.loads(row["place"] or "{}"), labels)
     if not (check and check.against):
@@ -59,7 +54,7 @@ def name_terms(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) ->
     return PrintedTerms(*(name_column(group, labels) for group in groups), place)
 
 
-def name_comparison(row: Row, check: ClaimCheck | None, labels: Mapping[str, str]) -> str:
+def name_comparison(row: Row, check: ClaimCheck | None, labels: Labels) -> str:
     """Name a comparison: the terms, and the place. check: None if the study has it no more."""
     terms = [row[name] for name in ("group", "relation", "other")]
     words = ["" if term is None else _format_value(term) for term in terms]
@@ -71,7 +66,7 @@ def name_comparison(row: Row, check: ClaimCheck | None, labels: Mapping[str, str
     return ", ".join(filter(None, [" ".join(filter(None, words)), names.place]))
 
 
-def name_variants(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[str, str]:
+def name_variants(claims: Sequence[Claim], labels: Labels) -> dict[str, str]:
     """Name the variants of claims as printed, by their names in claims.csv."""
     return {
         variants.name_variant(values): describe_place(values, labels)
@@ -80,7 +75,7 @@ def name_variants(claims: Sequence[Claim], labels: Mapping[str, str]) -> dict[st
     }
 
 
-def describe_place(values: Mapping[str, Any], labels: Mapping[str, str]) -> str:
+def describe_place(values: Mapping[str, Any], labels: Labels) -> str:
     """Describe values by column as printed: a label, or the value after the name of its column."""
     words = []
     for column, value in values.items():
@@ -101,9 +96,7 @@ def _format_value(value: Any) -> str:
     return f"{value:g}" if is_number(value) else str(value).replace("_", " ")
 
 
-def explain_verdict(
-    row: Row, check: ClaimCheck, labels: Mapping[str, str], own_criterion: bool
-) -> str:
+def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: bool) -> str:
     """Explain a verdict by a sentence about the claim's decisive comparison.
 
     row: from claim_checks.csv, None where it is empty. labels: name -> how it is printed.
@@ -290,8 +283,7 @@ _TEMPLATES = {
 def _name_quantity(row: Row) -> str:
     """Name the quantity that is measured, with its statistic: `exact arc length (mean)`."""
     statistic = row["statistic"]
-    metric = row["metric"] or ""
-    measured = describe_metric(metric).partition(";")[0] or metric.replace("_", " ")
+    measured = METRICS[row["metric"] or ""].meaning.partition(";")[0]
     return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
 
 
@@ -367,6 +359,15 @@ def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: st
 # Where a claim holds
 
 
+class Entry(NamedTuple):
+    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
+    columns), and its mark.
+    """
+
+    factors: Mapping[str, Any]
+    mark: str
+
+
 def _list_factors(entry: MarkedComparison, deciding: Sequence[MarkedComparison]) -> Entry:
     """List the factors that distinguish a comparison from the others of its claim, with
     its mark.
@@ -388,7 +389,7 @@ def _describe_check(check: ClaimCheck) -> str:
     return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
 
 
-def describe_where_it_holds(findings: Sequence[MarkedComparison], labels: Mapping[str, str]) -> str:
+def describe_where_it_holds(findings: Sequence[MarkedComparison], labels: Labels) -> str:
     """Say where a claim holds (`describe_split`), by the comparisons that decide.
 
     If all or none of these hold, because the closest of several taken together decides, say it by
@@ -437,16 +438,7 @@ def _build_key(entry: MarkedComparison) -> tuple:
     return entry.place, len(entry.parts) or entry.terms
 
 
-class Entry(NamedTuple):
-    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
-    columns), and its mark.
-    """
-
-    factors: Mapping[str, Any]
-    mark: str
-
-
-def describe_split(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
+def describe_split(comparisons: Sequence[Entry], labels: Labels) -> str:
     """Describe which comparisons of a claim hold and which do not; empty if all or none do.
 
     They are split by the factor that best separates those that hold from those that do not; for a
@@ -493,7 +485,7 @@ def _find_best_split(
     return best
 
 
-def _describe_subset(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
+def _describe_subset(factor: str, subset: list, every: list, labels: Labels) -> str:
     """Describe a subset of a factor's values."""
     others = [value for value in every if value not in subset]
     before = _choose_preposition(factor)
@@ -506,13 +498,13 @@ def _describe_subset(factor: str, subset: list, every: list, labels: Mapping[str
     return f"{before}{_join_names(subset, labels)}"
 
 
-def _join_names(values: list, labels: Mapping[str, str]) -> str:
+def _join_names(values: list, labels: Labels) -> str:
     """Join the names of values by commas and a last `and`."""
     names = [_name_value(value, labels) for value in values]
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def _name_value(value: Any, labels: Mapping[str, str]) -> str:
+def _name_value(value: Any, labels: Labels) -> str:
     """Name a value by its label, or else by its text."""
     return labels.get(str(value), f"{value:g}" if isinstance(value, float) else str(value))
 

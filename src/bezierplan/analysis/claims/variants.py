@@ -36,6 +36,7 @@ def apply_variant(
     for column, chosen in assignment.items():
         # Values are exchanged one by one: `Claim` accepts only lists that are equally long.
         pairs = dict(zip(convert_to_list(first[column]), convert_to_list(chosen), strict=True))
+        # With None in place of the values, each check that names one is another check.
         if any(_replace_in_check(check, column, dict.fromkeys(pairs)) != check for check in checks):
             checks = [_replace_in_check(check, column, pairs) for check in checks]
         elif chosen is not None:
@@ -78,4 +79,4 @@ def split_work(check: ClaimCheck) -> list[ClaimCheck]:
     """
     if not isinstance(check, OfRuns) or check.work is None:
         return [check]
-    return [check.use_work(), check.report_only()]
+    return [check.use_work(), check.but(secondary=True)]

@@ -1,40 +1,8 @@
 """Every published number of a table next to ours.
 
 One row for each group of runs, metric and statistic; an empty cell means that there is no such
-number. Columns:
-
-- key columns: columns of the runs table that identify the rows: those left of `metric` in the
-  published file, then the table's others
-- metric: what is measured, a name of `metrics.METRICS`
-- statistic: the statistic that the paper prints; `unstated` if it does not say, in which case ours
-  is the median
-- unit: unit of the metric; `-` for a number without one
-- n_published: runs behind the published number, if the paper states it
-- value_published: the published number; a variant of a published method is compared with that
-  method's number
-- n_ours: our runs that count: feasible ones for metrics of feasible paths, all for the others
-- n_asked: runs among which these are: the others failed, or have no such value
-- value_ours: the statistic of these runs
-- value_ours_scaled: the same for n_published runs (`statistics.scale_statistic`): counts and
-  extremes depend on their number
-- low95_ours, high95_ours: 95 % bootstrap interval of value_ours; empty below two runs, and for min,
-  max and range
-- low95_predicted, high95_predicted: the range of ours: what 95 % of experiments of n_published runs
-  would print, or of our runs if n_published is empty. It reaches at least `LEAST_REACH` of ours to
-  each side, and its ends are rounded outwards like the printed number (half a unit belongs to it)
-- position: the published number lies `below`, `inside` or `above` that range, or there is
-  `no range`: for times, and below six runs
-- wide: whether the range is too wide to tell: it holds at least half of the other numbers that the
-  paper prints for the metric and statistic in the same condition, or in all if there are none
-- reason: why the position proves nothing of the paper (`find_reasons`); empty if it may
-- possible: whether the metric can have the published value, and ranks add up. A length below the
-  bound of our map is judged all the same
-- share_feasible: share of all runs whose path the certified checker accepts
-- bound: least length of the problem, of the metric's kind (`metrics.Metric`); for several problems,
-  the median over the runs
-- gap: median over the feasible runs of that kind of length / bound - 1
-- primary: whether the row is of the default reading: no variant of a method, and what the
-  table's `primary` names
+number. The key columns come first, columns of the runs table that identify the rows: those left of
+`metric` in the published file, then the table's others. `columns.csv` has the columns after them.
 """
 
 import math
@@ -46,6 +14,7 @@ import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.numbers import tables
 from bezierplan.analysis.results import (
     Results,
@@ -84,30 +53,6 @@ ONE_DRAW = "one draw of a random map"
 NO_MAP = "the map is ours"
 UNDEFINED = "not defined in the paper"
 """Reasons why the position of a number proves nothing of the paper."""
-
-COLUMNS = [
-    "metric",
-    "statistic",
-    "unit",
-    "n_published",
-    "value_published",
-    "n_ours",
-    "n_asked",
-    "value_ours",
-    "value_ours_scaled",
-    "low95_ours",
-    "high95_ours",
-    "low95_predicted",
-    "high95_predicted",
-    "position",
-    "wide",
-    "reason",
-    "possible",
-    "share_feasible",
-    "bound",
-    "gap",
-    "primary",
-]
 
 
 def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
@@ -154,6 +99,7 @@ def compare(
         spec = spec.but(where=spec.where | {"method": methods + beside})
     ours = tables.compute_cells(results, spec, keys, beside)
     ours = tables.place_cells(ours, spec, list(results.problems))
+    # Before the join, while all ranks of the printed table stand together.
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
     both = _join_published(ours, marked, key_columns, variant_of)
     # The outer join sorts rows by name; the table has an order of its own.
@@ -170,13 +116,16 @@ def compare(
     described = pd.DataFrame(
         [_compute_row(row, keys, name) for row in both.to_dict("records")], index=both.index
     )
-    table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
+    table = both.join(described).reindex(
+        columns=keys + COLUMNS_OF["comparison"] + PLACES * spec.printed
+    )
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
     table["reason"] = find_reasons(both, spec, reconstructed, fitted or {})
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
+    # Written as whole numbers and flags, also where cells are empty.
     whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
     marks = ("wide", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
@@ -314,10 +263,12 @@ def _find_wide(
             wide.append(None)
             continue
         # A variant's own name is in no published row; its number is that of its published method.
-        own = {key: row["printed_method" if key == "method" else key] for key in key_columns}
+        own = pd.Series(
+            {key: row["printed_method" if key == "method" else key] for key in key_columns}
+        )
         same = alike[row["metric"], row["statistic"]]
-        others = same[(same[key_columns] != pd.Series(own)).any(axis=1)]
-        here = others[(others[places] == pd.Series(own)[places]).all(axis=1)]
+        others = same[(same[key_columns] != own).any(axis=1)]
+        here = others[(others[places] == own[places]).all(axis=1)]
         values = (others if here.empty else here)["value"].astype(float)
         held = values.between(row["low95_predicted"], row["high95_predicted"])
         wide.append(bool(held.mean() >= WIDE))
@@ -382,11 +333,11 @@ def round_range(
         return low, high
     unit = 10.0**-decimals
     ends = (
-        end if math.isinf(end) else round(whole(end / unit) * unit, decimals)
+        end if math.isinf(end) else round(whole(end / unit + half) * unit, decimals)
         # Half a unit belongs to a printed number; 1e-9 of a unit is for rounding.
-        for end, whole in (
-            (low, lambda end: math.ceil(end - 0.5 - 1e-9)),
-            (high, lambda end: math.floor(end + 0.5 + 1e-9)),
+        for end, whole, half in (
+            (low, math.ceil, -0.5 - 1e-9),
+            (high, math.floor, 0.5 + 1e-9),
         )
     )
     return tuple(map(float, ends))
@@ -418,17 +369,10 @@ def format_range(number: Mapping[str, Any]) -> str:
 
 def is_possible(row: Mapping[str, Any], size: int | None) -> bool:
     """Return whether runs can have the published number, up to half a unit of its last digit."""
-    low, high = _find_limits(row["statistic"], (row["least"], row["most"]), size)
+    low, high, statistic = row["least"], row["most"], row["statistic"]
+    if statistic in ("std", "iqr", "range"):
+        low, high = 0.0, math.inf
+    elif statistic in ("count", "share"):
+        low, high = 0.0, 1.0 if statistic == "share" else size or math.inf
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
     return low - half <= row["value_published"] <= high + half
-
-
-def _find_limits(
-    statistic: str, single: tuple[float, float], size: int | None
-) -> tuple[float, float]:
-    """Find the range of a statistic of runs whose single values lie in a given range."""
-    if statistic in ("std", "iqr", "range"):
-        return 0.0, math.inf
-    if statistic in ("count", "share"):
-        return 0.0, 1.0 if statistic == "share" else size or math.inf
-    return single

@@ -1,31 +1,14 @@
-"""Results of each method on each problem: a row per study, family of problems, method and problem.
-
-Columns of `methods.csv`:
-
-- study, experiment, family, problem, method: what is measured; a family is a group of problems that
-  the study declares, and empty for the problems of none
-- proposed: whether it is the method that the paper proposes
-- straight: whether the straight line from start to target is free
-- runs, free: number of runs, and the share whose path the certified checker accepts
-- excess, excess_low, excess_high: length over that of the exact shortest path, less 1, of free
-  runs: median and its 95 % bootstrap interval, empty for one run
-- round, cornered: free runs whose path has no corner, and those whose path has one
-- curvature: largest curvature of the first 100 paths without corners, in 1/unit: median; empty, as
-  the columns after it, for a problem of no family
-- rounded: excess of the exact shortest path with its corners rounded, asked to turn no tighter than
-  that; empty if every free path has a corner
-- rounded_curvature: largest curvature of that path, greater where its turns have no more room
-- cpu_ms, evaluations: CPU time of a run, and the paths that it evaluates: medians of all runs
-"""
+"""Results of each method on each problem, and their summary by families of problems."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, naming, statistics
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.results import Results, build_path
 from bezierplan.geometry.tightest_turn import largest_curvature
 from bezierplan.planners import rounded_shortest_path
@@ -45,57 +28,24 @@ _STRAIGHT = 1e-9
 # radii of the rounded path are 2 % apart.
 _EQUAL, _TIGHTER = 1e-6, 1.03
 
-COLUMNS = (
-    *("study", "experiment", "family", "problem", "method", "proposed", "straight", "runs", "free"),
-    *("excess", "excess_low", "excess_high", "round", "cornered", "curvature"),
-    *("rounded", "rounded_curvature", "cpu_ms", "evaluations"),
-)
 
-
-class Family(NamedTuple):
-    """The problems of an experiment that belong together. problems: their names, all if empty.
-    straight: `free` or `blocked` for those whose straight line is, or None for both.
+def _measure_methods(
+    experiment: str, results: Results, families: Mapping[str, Any]
+) -> Iterator[dict[str, Any]]:
+    """Yield the row of each method on each problem of an experiment: the columns of `methods.csv`
+    but for study and proposed.
     """
-
-    experiment: str
-    problems: Sequence[str] = ()
-    straight: str | None = None
-
-    def has(self, experiment: str, problem: str, straight: bool) -> bool:
-        """Return whether a problem is one of the family."""
-        return (
-            self.experiment == experiment
-            and (not self.problems or problem in self.problems)
-            and self.straight in (None, "free" if straight else "blocked")
-        )
-
-
-def measure_methods(
-    experiment: str, results: Results, families: Mapping[str, Family]
-) -> pd.DataFrame:
-    """Measure each method on each problem of an experiment, a row each: `COLUMNS` but for study and
-    proposed.
-    """
+    problems = results.problems
     runs = results.runs.assign(
         free=results.runs["feasible"].astype(bool),
-        gap=metrics.compute_values(results.runs, "gap", results.problems),
-        corners=metrics.compute_values(results.runs, "corners", results.problems),
+        gap=metrics.compute_values(results.runs, "gap", problems),
+        corners=metrics.compute_values(results.runs, "corners", problems),
     )
-    return pd.DataFrame(_list_rows(experiment, runs, results.problems, families))
-
-
-def _list_rows(
-    experiment: str,
-    runs: pd.DataFrame,
-    problems: Mapping[str, Problem],
-    families: Mapping[str, Family],
-) -> Iterator[dict[str, Any]]:
-    """Yield the row of each method on each problem."""
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
-        kin = (key for key, kind in families.items() if kind.has(experiment, name, straight))
-        family = next(kin, "")
+        own = (key for key, each in families.items() if each.has(experiment, name, straight))
+        family = next(own, "")
         names = {"experiment": experiment, "family": family, "problem": name}
         for method, of_method in of_problem.groupby("method", sort=False):
             free = of_method[of_method["free"]]
@@ -142,19 +92,21 @@ def _measure_turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict
 
 def measure_studies(
     proposed: Mapping[str, str | None],
-    families: Mapping[str, Mapping[str, Family]],
+    families: Mapping[str, Mapping[str, Any]],
     experiments: Mapping[str, Results],
 ) -> pd.DataFrame:
-    """Measure the methods of all experiments, each `study/experiment`; return their rows with
-    `COLUMNS`. proposed, families: by study.
+    """Measure the methods of all experiments, each `study/experiment`; return the rows of
+    `methods.csv`.
+
+    proposed, families: by study, as it declares them (`study.experiments.FamilyEntry`).
     """
     tables = []
     for place, results in experiments.items():
         study, _, name = place.partition("/")
-        rows = measure_methods(name, results, families[study])
+        rows = pd.DataFrame(_measure_methods(name, results, families[study]))
         tables.append(rows.assign(study=study, proposed=rows["method"] == proposed[study]))
     rows = pd.concat(tables) if tables else pd.DataFrame()
-    return rows.reindex(columns=COLUMNS)
+    return rows.reindex(columns=COLUMNS_OF["methods"])
 
 
 def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
@@ -170,6 +122,7 @@ def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
     both = known["rounded"].notna()
     shorter = known["excess"] < known["rounded"] - _EQUAL
     smoother = known["curvature"] * _TIGHTER < known["rounded_curvature"]
+    # Shares are weighted by runs, of which problems may have different numbers.
     known = known.assign(
         frees=known["free"] * known["runs"], both=both, adds=both & (shorter | smoother)
     )
@@ -183,7 +136,7 @@ def group_by_family(rows: pd.DataFrame) -> pd.DataFrame:
     return worst_first.drop(columns="frees").reset_index()
 
 
-def format_table(rows: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
     """Format the rows of `group_by_family` as words; the index is the method.
 
     labels: name -> how it is printed; a name of several studies stands after `study/`.

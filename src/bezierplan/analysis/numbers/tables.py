@@ -158,7 +158,7 @@ def _compute_cell(
         decimals=entry.decimals,
         size=len(counted),
         numbers=np.sort(numbers),
-        # With problem and repeat, by which methods are drawn together (`wholes`).
+        # With problem and repeat, by which methods are drawn together (`order_and_level`).
         by_run=pd.Series(
             measures.values[of_entry],
             pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
@@ -177,6 +177,7 @@ def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> p
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
     ordered = order_keys(groups, spec, problems)
     ordered["statistic"] = pd.Categorical(groups["statistic"], categories=list(order), ordered=True)
+    # Numbers of the combinations that occur, in the order of the categories.
     rows, columns = (
         ordered.groupby(levels, dropna=False, observed=True).ngroup()
         for levels in _list_levels(spec)
@@ -196,7 +197,7 @@ def lay_out(
 
 
 def build_pivot(
-    results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame | None = None
+    results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame
 ) -> pd.DataFrame:
     """Build a table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
@@ -213,7 +214,7 @@ def build_pivot(
         statistics.compute_statistic(*each) for each in zip(table["statistic"], table["numbers"])
     ]
     decimals = table["decimals"]
-    if spec.printed and published is not None:
+    if spec.printed:
         digits = published["as_printed"].map(possible.count_decimals)
         # The most frequent number of decimals of a metric; of equally frequent ones the larger.
         usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
@@ -229,7 +230,9 @@ def build_pivot(
         .apply(_label_level, labels=labels, titles=titles)
         for place, levels in zip(("table_row", "table_column"), _list_levels(spec))
     )
-    index = _build_index(rows.rename(columns=labels))
+    rows = rows.rename(columns=labels)
+    # An index of several levels stays several columns in the file.
+    index = pd.MultiIndex.from_frame(rows) if rows.shape[1] > 1 else pd.Index(rows.iloc[:, 0])
     columns = pd.Index([": ".join(levels) for levels in heads.itertuples(index=False)])
     wide = lay_out(table, texts, index, columns)
     # A table of the paper's form has the paper's columns alone.
@@ -284,11 +287,6 @@ def _list_levels(spec: Pivot) -> tuple[list[str], list[str]]:
     if "value" not in index + columns and (len(spec.values) > 1 or not columns):
         columns.insert(0, "value")
     return index, columns
-
-
-def _build_index(levels: pd.DataFrame) -> pd.Index:
-    """Build the rows of a table as an index of one or several levels."""
-    return pd.Index(levels.iloc[:, 0]) if levels.shape[1] == 1 else pd.MultiIndex.from_frame(levels)
 
 
 def _label_level(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:

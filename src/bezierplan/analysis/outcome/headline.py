@@ -1,12 +1,13 @@
-"""The outcome of numbers, claims and methods, in a sentence each: README, page and the last
-lines of a run show the same.
+"""The outcome of numbers and of claims, in a sentence each: README, page and the last lines of a
+run show the same.
 """
 
-import numpy as np
+from collections import Counter
+
 import pandas as pd
 
-from bezierplan.analysis import naming, words
-from bezierplan.analysis.numbers import comparison, methods
+from bezierplan.analysis import legend, naming
+from bezierplan.analysis.numbers import comparison
 
 
 def describe_numbers(numbers: pd.DataFrame) -> str:
@@ -39,42 +40,8 @@ def describe_claims(claims: pd.DataFrame) -> str:
     claims = claims[claims["primary"].astype(bool) & ~claims["finding"].astype(bool)]
     if claims.empty:
         return ""
-    groups = words.list_groups("claim")
-    counts = claims["verdict"].map(groups).value_counts().reindex([*groups.values()], fill_value=0)
-    # A group of several verdicts stands there once for each.
-    counts = counts[~counts.index.duplicated()]
+    counts = Counter(legend.WORDS[verdict].group for verdict in claims["verdict"])
     return (
         f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "
         f"hold in part, {counts['fail']} fail, and {counts['open']} cannot be decided."
-    )
-
-
-def describe_methods(of_problems: pd.DataFrame) -> str:
-    """Say what the papers' methods are worth beside the exact shortest path with rounded corners.
-
-    of_problems: as from `methods.measure_studies`.
-    """
-    rows = methods.group_by_family(of_problems)
-    rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
-    none = int((rows["adds"] == 0).sum())
-    return (
-        "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios with smooth paths, no "
-        "method of a paper is shorter at equal smoothness, or smoother."
-    )
-
-
-def compute_deviations(numbers: pd.DataFrame) -> np.ndarray:
-    """Compute |ours - published| / |published| of numbers, infinite beside a 0.
-
-    Ours are scaled to the paper's number of runs. Quantities that the paper does not define say
-    nothing, and are left out.
-    """
-    numbers = numbers[numbers["reason"] != comparison.UNDEFINED]
-    published, ours = (
-        numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
-    )
-    off = np.abs(ours - published)
-    return np.divide(
-        off, np.abs(published), out=np.where(off > 0, np.inf, 0.0), where=published != 0
     )

@@ -6,30 +6,31 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.numbers import comparison
 
 
 def gather(
     comparison_files: Mapping[tuple[str, str], str],
-    wholes_files: list[str],
+    column_files: list[str],
     claims_files: list[str],
 ) -> dict[str, pd.DataFrame]:
-    """Gather the tables of all studies by name: `numbers`, `claims`, and `wholes`, columns of
-    numbers.
+    """Gather the tables of all studies by name: `numbers`, `claims`, and `order_and_level` of
+    columns of numbers.
 
-    comparison_files: by study and table. wholes_files: of the same tables. claims_files: of the
+    comparison_files: by study and table. column_files: of the same tables. claims_files: of the
     studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
-    none = pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
+    # Readers select by these columns, which without a row would be of no type.
+    none = pd.DataFrame(columns=COLUMNS_OF["claims"]).astype({"primary": bool, "finding": bool})
     return {
         "numbers": list_numbers(
             {name: pd.read_csv(file) for name, file in comparison_files.items()}
         ),
         "claims": pd.concat(claims, ignore_index=True) if claims else none,
-        "wholes": pd.concat(map(pd.read_csv, wholes_files), ignore_index=True),
+        "order_and_level": pd.concat(map(pd.read_csv, column_files), ignore_index=True),
     }
 
 
@@ -73,7 +74,10 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
         listed = list(rows.iterrows())
         for (_, earlier), (index, row) in itertools.combinations(listed, 2):
             # The first table that prints a number keeps it.
-            if earlier["table"] != row["table"] and _is_same_place(earlier, row, keys):
+            if earlier["table"] != row["table"] and all(
+                pd.isna(one) or pd.isna(other) or one == other
+                for one, other in zip(earlier[keys], row[keys])
+            ):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
@@ -82,10 +86,3 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
         if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
             counted[numbers.index.get_loc(rows.index[-1])] = False
     return counted
-
-
-def _is_same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
-    """Return whether two rows have the same key columns as far as both have them."""
-    return all(
-        one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key]))
-    )

@@ -11,7 +11,7 @@ from bezierplan.places import OUTCOME
 HERE = Path(__file__).parent
 EVIDENCE = [
     str(OUTCOME / f"{name}.csv")
-    for name in ("numbers", "claims", "methods", "claim_checks", "wholes")
+    for name in ("numbers", "claims", "methods", "claim_checks", "order_and_level")
 ]
 """What many runs say of all studies: tables of `reader.Evidence`."""
 

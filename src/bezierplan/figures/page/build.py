@@ -15,11 +15,11 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import naming, words
+from bezierplan.analysis import legend, naming
 from bezierplan.analysis.claims.sentences import describe_metric
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
-from bezierplan.analysis.outcome.proof import describe_version
+from bezierplan.analysis.outcome.verification import describe_version
 from bezierplan.figures.page import HERE, addresses, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import Labels, PageJob
 from bezierplan.running.columns import Row
@@ -148,7 +148,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         keep_trailing_newline=True,
     )
     environment.filters |= {
-        "look": lambda verdict: words.WORDS.get(verdict, words.OTHER),
+        "look": lambda verdict: legend.WORDS.get(verdict, legend.OTHER),
         "short": format_value,
         "heading": naming.format_heading,
         "amount": naming.format_amount,
@@ -172,8 +172,8 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": read_size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
-        "verdicts_on": words.select_words,
-        "words": words.WORDS,
+        "verdicts_on": legend.select_words,
+        "words": legend.WORDS,
     }
     return environment
 
@@ -209,9 +209,9 @@ def label_keys(text: Any, labels: Labels) -> str:
 
 
 def count_verdicts(rows: Iterable[Row]) -> list[tuple[str, int]]:
-    """Count the rows of each verdict, in the order of `words.WORDS`."""
+    """Count the rows of each verdict, in the order of `legend.WORDS`."""
     found = Counter(filter(None, (row["verdict"] for row in rows)))
-    names = [*words.WORDS, *sorted(found.keys() - words.WORDS.keys())]
+    names = [*legend.WORDS, *sorted(found.keys() - legend.WORDS.keys())]
     return [(name, found[name]) for name in names if found[name]]
 
 

@@ -4,7 +4,7 @@ use on a map of one's own.
 
 from types import SimpleNamespace
 
-from bezierplan.analysis import words
+from bezierplan.analysis import legend
 from bezierplan.running.columns import Row
 
 
@@ -43,7 +43,7 @@ def select_claims_of_paper(study: SimpleNamespace) -> list[Row]:
 
 def find_group(claim: Row) -> str:
     """Return the group in which the verdict of a claim counts."""
-    return words.WORDS.get(claim["verdict"], words.OTHER).group
+    return legend.WORDS.get(claim["verdict"], legend.OTHER).group
 
 
 def select_failing(study: SimpleNamespace) -> list[Row]:

@@ -25,7 +25,8 @@ from bezierplan.analysis.metric import (
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Path, Problem
+    from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.problem import Path
 
 # Approximate length, in units, of the parts by which a path's bending is measured, and samples of a
 # curved piece from which they are cut.
@@ -80,7 +81,7 @@ def max_turn(path: Path) -> float:
     step=1.0,
     on=("grid",),
 )
-def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def straight_blocked(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Tell for which runs (n,), on grids, the straight line from start to target touches an
     occupied cell.
     """
@@ -93,7 +94,7 @@ def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Ser
     return runs["problem"].map(blocked)
 
 
-def measure_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[float]:
     """Measure a length counted in cells (`cell_length`).
 
     NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding
@@ -119,7 +120,7 @@ def measure_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]
     return lengths
 
 
-def compute_gap_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def compute_gap_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return a length counted in cells over the problem's least such length, minus 1 (n,)."""
     return measure_in_cells(name, runs, problems) / runs["octile_bound"] - 1
 

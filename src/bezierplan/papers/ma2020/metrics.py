@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from shapely import Geometry
 
-    from bezierplan.workspaces.problem import Path, Problem
+    from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.problem import Path
 
 
 @of_path("rad", "largest change of heading between neighbouring chords")
@@ -93,7 +94,7 @@ def _build_inside(grid: Grid) -> Geometry:
     feasible_only=True,
     on=("grid",),
 )
-def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+def obstacle_clearance(runs: pd.DataFrame, problems: Problems) -> list[float]:
     """Return the least distance (n,) from a path in a grid to its occupied cells; infinite without
     any.
     """
@@ -134,7 +135,7 @@ def _prepare_clearance(grid: Grid) -> Callable[[Path], float]:
     needs=("safety_distance",),
     on=("grid",),
 )
-def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def keeps_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which paths (n,) keep their planner's safety distance from the obstacles; NaN where the
     planner has none.
     """
@@ -149,7 +150,7 @@ def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarr
     needs=("safety_distance",),
     on=("grid",),
 )
-def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def length_at_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Return the lengths (n,) of paths that keep their planner's safety distance; NaN of all
     others.
     """

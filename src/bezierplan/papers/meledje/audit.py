@@ -4,7 +4,8 @@ Numbers of equations, sections, tables and figures are the paper's.
 """
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -44,10 +45,7 @@ def audit(published: "Published") -> list[dict]:
     rows = rules.check_rules(published)
     for sentence in said:
         if sentence.quantity in TESTED:
-            rows += _test_by_fisher(
-                tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best]
-            )
-            rows.append(_test_all_maps(tables, trials, sentence.quantity, sentence.words))
+            rows += _test_counts(tables, trials, others, sentence)
     pairs = list(itertools.combinations(operators, 2))
     for metric, words in RANKED.items():
         for name in ("table3", "table4", "table5"):
@@ -67,20 +65,18 @@ def audit(published: "Published") -> list[dict]:
     return [*rows, compare_with_limit("text", "title", rule, drives, ">=", 1)]
 
 
-def _test_by_fisher(
-    tables: dict[str, pd.Series],
-    trials: dict[str, int],
-    others: list[str],
-    metric: str,
-    words: str,
-    sign: int,
-) -> list[dict]:
-    """Test whether the proposed mutation's count differs from each other one by more than chance.
+def _test_counts(
+    tables: dict[str, pd.Series], trials: dict[str, int], others: list[str], sentence: Any
+) -> Iterator[dict]:
+    """Test whether the proposed mutation's count differs from each other one by more than chance;
+    and from that of ref12 over all maps together, by the test of Cochran, Mantel and Haenszel with
+    its correction for continuity, a map a stratum.
 
-    sign: 1 if a higher count is better, -1 if a lower one is.
+    sentence: its quantity, whether the highest or lowest is best, and its words.
     """
     from scipy import stats
 
+    metric, sign = sentence.quantity, SIGN[sentence.best]
     pairs, apart, p = list(itertools.product(tables, others)), [], []
     for name, other in pairs:
         own, theirs = (tables[name][method, metric] for method in ("proposed", other))
@@ -88,32 +84,12 @@ def _test_by_fisher(
         apart.append(own - theirs)
         p.append(stats.fisher_exact(square).pvalue)
     rule = (
-        f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected by "
-        "Holm"
+        f"the proposed mutation has the {sentence.words} beyond chance: p of Fisher's test, "
+        "corrected by Holm"
     )
-    return [
-        build_audit_row(
-            name,
-            f"metric={metric}, proposed and {other}",
-            rule,
-            value,
-            ALPHA,
-            bool(value < ALPHA and sign * more > 0),
-        )
-        for (name, other), more, value in zip(pairs, apart, correct_by_holm(np.array(p)).tolist())
-    ]
-
-
-def _test_all_maps(
-    tables: dict[str, pd.Series], trials: dict[str, int], metric: str, words: str
-) -> dict:
-    """Test whether the proposed mutation's counts of all maps together differ from those of ref12
-    by more than chance.
-
-    The test of Cochran, Mantel and Haenszel with its correction for continuity, a map a stratum.
-    """
-    from scipy import stats
-
+    for (name, other), more, value in zip(pairs, apart, correct_by_holm(np.array(p)).tolist()):
+        location, fits = f"metric={metric}, proposed and {other}", value < ALPHA and sign * more > 0
+        yield build_audit_row(name, location, rule, value, ALPHA, bool(fits))
     ours, theirs, size = np.array(
         [
             [table["proposed", metric], table["ref12", metric], trials[name]]
@@ -121,21 +97,20 @@ def _test_all_maps(
         ]
     ).T
     both = ours + theirs
-    apart = float((ours - both / 2).sum())
+    off = float((ours - both / 2).sum())
     variance = float((both * (2 * size - both) / (4 * (2 * size - 1))).sum())
-    chi_square = max(abs(apart) - 0.5, 0.0) ** 2 / variance
-    p = float(stats.chi2.sf(chi_square, 1))
+    chi_square = max(abs(off) - 0.5, 0.0) ** 2 / variance
+    chance = float(stats.chi2.sf(chi_square, 1))
     told = (
         f"{ours.sum():.0f} against {theirs.sum():.0f} of {size.sum():.0f}; chi-square "
-        f"{chi_square:.2g}, p = {p:.2g}"
+        f"{chi_square:.2g}, p = {chance:.2g}"
     )
     rule = (
-        f"over all maps the proposed mutation has as often the {words} as ref12, but for chance: p "
-        "of the test of Cochran, Mantel and Haenszel"
+        f"over all maps the proposed mutation has as often the {sentence.words} as ref12, but for "
+        "chance: p of the test of Cochran, Mantel and Haenszel"
     )
-    return build_audit_row(
-        ", ".join(tables), f"metric={metric}, all maps", rule, p, ALPHA, bool(p >= ALPHA), told
-    )
+    location, fits = f"metric={metric}, all maps", bool(chance >= ALPHA)
+    yield build_audit_row(", ".join(tables), location, rule, chance, ALPHA, fits, told)
 
 
 def correct_by_holm(p: np.ndarray) -> np.ndarray:

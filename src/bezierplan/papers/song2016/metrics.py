@@ -27,7 +27,8 @@ from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Path, Problem
+    from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.problem import Path
 
 
 @metric(
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     "length / length of the best feasible run of the same method and condition - 1",
     feasible_only=True,
 )
-def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+def gap_best(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return the length over the best one's of the same method and condition, minus 1 (n,)."""
     best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
     return runs["length"] / best - 1
@@ -76,7 +77,7 @@ def occupied_points(path: Path, grid: Grid) -> int:
 
 
 @metric("-", "whether the path is free and so is its control polygon", step=1.0, on=("grid",))
-def free_polygon(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def free_polygon(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which runs (n,) have a free path whose control polygon touches no occupied cell."""
     polygons = runs.assign(path_curve=np.where(runs["path_curve"] == "", "", "polyline"))
     free = measure_on_maps(
@@ -91,9 +92,7 @@ def polygon_length(path: Path) -> float:
     return float(np.hypot(*np.diff(path.points, axis=0).T).sum())
 
 
-def find_generation_improved_by(
-    share: float, runs: pd.DataFrame, problems: dict[str, Problem]
-) -> np.ndarray:
+def find_generation_improved_by(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Return the first generation (n,) by which a share of the improvement from generation 0 to the
     last is made; 0 if there is none.
     """

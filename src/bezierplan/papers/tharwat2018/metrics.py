@@ -20,7 +20,8 @@ from bezierplan.workspaces.circles import Circles
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Path, Problem, Workspace
+    from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.problem import Path, Workspace
 
 # Samples of a path that determine its way round the circles.
 CLASS_SAMPLES = 2001
@@ -66,7 +67,7 @@ def homotopy(path: Path, workspace: Workspace) -> float:
     step=1.0,
     on=("circles",),
 )
-def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def best_corridor(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which runs (n,) have a free path in the homotopy class of the exact shortest one; NaN
     without circles.
     """
@@ -85,7 +86,7 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
 
 
 @metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
-def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+def points_evaluated(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Count the control points (n,) of all paths evaluated, each counted with as many as the run's
     path has; NaN where the run has no path.
     """

@@ -17,7 +17,6 @@ from pydantic import Field, model_validator
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, refuse_same_group
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
-from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
 if TYPE_CHECKING:
@@ -60,23 +59,17 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
     name: seeds the draws. p is that of lying outside where the effect lies within, and the other
     way round.
     """
-    ours = effects.compute_our_effect(check, comparison)
-    n, reason = effects.count_units(comparison), effects.explain_too_few(comparison)
-    if reason:
-        return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if effects.choose_statistic(check) in WITHOUT_INTERVAL:
-        return effects.judge_by_draws(check, comparison, name)
-    margin = effects.compute_margin(check, comparison)
-    draws = effects.draw_effects(check, comparison, name)
-    low, high = effects.compute_interval_of_draws(draws)
+    finding, draws = effects.measure_effect(check, comparison, name)
+    if finding.mark:
+        return finding
+    ours, margin = finding.effect, finding.margin
     toward = 1 if bool(is_within_margin(check, ours, margin)) else -1
     beyond = draws - check.target
-    if math.isnan(low):
+    if math.isnan(finding.low95):
         p = math.nan
     elif toward > 0:
         p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
     else:
         inside = beyond <= margin if ours > check.target else beyond >= -margin
         p = min(1.0, 2 * float(np.mean(inside)))
-    reason = effects.explain_missing(ours)
-    return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=reason)
+    return finding._replace(p=p, toward=toward, reason=effects.explain_missing(ours))

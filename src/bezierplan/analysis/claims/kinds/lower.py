@@ -41,7 +41,6 @@ from bezierplan.analysis.claims.check import (
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compare_ranks, compute_a12
-from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
@@ -115,24 +114,19 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
 
 def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     """Test whether the first cell is lower (higher) than the second. name: seeds the draws."""
-    ours = effects.compute_our_effect(check, comparison)
-    n, reason = effects.count_units(comparison), effects.explain_too_few(comparison)
-    if reason:
-        return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if effects.choose_statistic(check) in WITHOUT_INTERVAL:
-        finding = effects.judge_by_draws(check, comparison, name)
+    finding, draws = effects.measure_effect(check, comparison, name)
+    ours, n, margin = finding.effect, finding.n, finding.margin
+    low, high = finding.low95, finding.high95
+    if finding.mark:
         # Below the margin the sentence is open, however often it holds.
-        return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
+        return finding if abs(ours) >= margin else finding._replace(mark="?")
     side, least = effects.SIDES[check.direction], check.least
-    margin = effects.compute_margin(check, comparison)
-    draws = effects.draw_effects(check, comparison, name)
-    low, high = effects.compute_interval_of_draws(draws)
     toward = np.sign(side * ours - least)
     # A claimed least effect takes the place of the margin.
     if not least and abs(ours) < margin:
         toward = 0
-    (stratum, *others) = comparison.strata.values()
-    group, reference = effects.select_counted(stratum, comparison.paired)
+    (group, reference), *others = comparison.list_values()
+    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
     named = check.statistic
     # The tests below are for one condition, and for ranks, means or unshifted booleans.
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
@@ -140,46 +134,44 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
     elif comparison.boolean:
         p = _compute_p_of_booleans(group, reference, comparison.paired)
     elif named == "mean":
-        p = _compute_p_of_means(
-            *_shift_other(check, *effects.select_finite(stratum, comparison.paired)),
-            comparison.paired,
-        )
+        ((group, reference),) = comparison.list_values(finite=True)
+        p = _compute_p_of_means(*_shift_other(check, group, reference), comparison.paired)
     else:
         p, ranked = compare_ranks(*_shift_other(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
-        toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
-    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
+        toward = side * ranked if infinite or toward == side * ranked else 0
+    # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
     if not (math.isfinite(ours) or infinite):
         p = math.nan
     size_name, size = _compute_effect_size(check, comparison, side, ours)
-    finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = effects.explain_missing(p) or (
         "" if toward else effects.explain_no_difference(low, high, n)
     )
     negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
-    finding = finding._replace(negligible=negligible, reason=reason)
-    return _remove_p(finding) if ours and _is_constant(comparison) else finding
+    finding = finding._replace(
+        effect_size_name=size_name,
+        effect_size=size,
+        p=p,
+        toward=int(np.nan_to_num(toward)),
+        negligible=negligible,
+        reason=reason,
+    )
+    if not ours or not _is_constant(comparison):
+        return finding
+    # Nothing varies by chance between two constants that differ: the mark stays, without p.
+    return finding._replace(
+        mark=verdicts.choose_mark(finding, p),
+        p=math.nan,
+        reason=reason or "both are constant, so there is no p",
+    )
 
 
 def _is_constant(comparison: Contrast) -> bool:
     """Return whether each cell has one and the same number in all its units, in every condition."""
-    cells = [
-        values
-        for stratum in comparison.strata.values()
-        for values in effects.select_counted(stratum, comparison.paired)
-    ]
     return not comparison.boolean and all(
-        np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
-    )
-
-
-def _remove_p(finding: Finding) -> Finding:
-    """Remove p from the finding on two constants that differ, since nothing varies by chance, and
-    keep the mark that it gives.
-    """
-    reason = finding.reason or "both are constant, so there is no p"
-    return finding._replace(
-        mark=verdicts.choose_mark(finding, finding.p), p=math.nan, reason=reason
+        np.isfinite(values).all() and np.ptp(values) == 0
+        for cells in comparison.list_values()
+        for values in cells
     )
 
 
@@ -238,9 +230,7 @@ def _compute_effect_size(
     """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
     the claimed direction; or the difference itself.
     """
-    pairs = [
-        effects.select_counted(stratum, comparison.paired) for stratum in comparison.strata.values()
-    ]
+    pairs = comparison.list_values()
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs
         if comparison.paired:

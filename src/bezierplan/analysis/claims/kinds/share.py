@@ -118,9 +118,7 @@ def find(check: Options, comparison: Contrast, name: str) -> Finding:
     """
     from scipy import stats
 
-    happened = np.concatenate(
-        [effects.select_counted(stratum, False)[0] for stratum in comparison.strata.values()]
-    )
+    happened = np.concatenate([cell for (cell,) in comparison.list_values()])
     n, k = len(happened), int(happened.sum())
     if not n:
         return Finding(mark="?", reason="no run counts")

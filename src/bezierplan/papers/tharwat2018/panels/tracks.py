@@ -80,7 +80,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     feasible = results.runs[results.runs["feasible"]]
     groups = metrics.compute_values(feasible, options.by, results.problems)
     parts = [workspaces.list_ends(problem)]
-    for group in _rank_commonest(groups)[: options.runs]:
+    # The commonest first, ties by size.
+    ranked = groups.value_counts().sort_index().sort_values(ascending=False, kind="stable")
+    for group in ranked.index[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
         paths = execution.track_again(results.jobs[method], run, problem)
         if options.point >= len(paths[0]):
@@ -97,11 +99,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         "groups": groups.nunique(),
     }
     return drawn.assign(**names)[[*names, *columns]]
-
-
-def _rank_commonest(groups: pd.Series) -> list[float]:
-    """Return the distinct values, the commonest first, ties by size."""
-    return groups.value_counts().sort_index().sort_values(ascending=False, kind="stable").index
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

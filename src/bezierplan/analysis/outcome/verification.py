@@ -159,7 +159,9 @@ def _make_again(files: list[Path], config: dict[str, Any], away: str, processes:
     done = subprocess.run(
         [
             *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
+            # The copies are thrown away, so nothing of them is to be remembered.
             *("--cores", str(processes), "--nolock", "--drop-metadata", "--keep-going"),
+            # A profile might send the jobs to a cluster, from where the copies cannot be seen.
             *("--workflow-profile", "none", "--scheduler", "greedy"),
             *("--allowed-rules", *_RULES, "--"),
             *files,

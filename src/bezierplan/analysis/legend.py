@@ -1,5 +1,5 @@
 """Positions of published numbers, and verdicts on claims: how each is said, shown and counted
-(`words.csv`).
+(`legend.csv`).
 """
 
 import csv
@@ -25,6 +25,7 @@ class Word(NamedTuple):
     meaning: str
 
 
+# Without pandas, because captions need the words at every start of the workflow.
 with Path(__file__).with_suffix(".csv").open(encoding="utf-8", newline="") as rows:
     WORDS = {row.pop("word"): Word(**row) for row in csv.DictReader(rows)}
 """In the order in which they are counted and explained."""
@@ -36,8 +37,3 @@ OTHER = Word("", "open", "", "", "open", "·", "", "")
 def select_words(what: str) -> dict[str, Word]:
     """Select the positions of numbers, or the verdicts on claims. what: `number` or `claim`."""
     return {name: word for name, word in WORDS.items() if word.on == what}
-
-
-def list_groups(what: str) -> dict[str, str]:
-    """List the group in which each position or verdict counts. what: `number` or `claim`."""
-    return {name: word.group for name, word in select_words(what).items()}

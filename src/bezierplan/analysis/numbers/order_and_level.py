@@ -4,10 +4,6 @@ of the paper's size that are drawn from our runs.
 Methods that start alike, or plan on the same random maps, have good and bad luck together. So whole
 repeats are drawn, each with the runs of all methods (`together`); otherwise each method's runs on
 their own. An experiment prints the mean of those of its runs that count, rounded like the paper's.
-
-Columns: study, table, place (the other keys, as JSON), metric, methods (how many), quantity (level:
-the mean over methods; order: Spearman's rank correlation with our means), printed,
-low95_predicted, high95_predicted, position (as in `comparison`).
 """
 
 import json
@@ -18,6 +14,7 @@ import pandas as pd
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit.rows import describe_cell
+from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.analysis.numbers import comparison, tables
 from bezierplan.analysis.results import Results, list_key_columns
 from bezierplan.analysis.table_kinds import Pivot
@@ -25,19 +22,6 @@ from bezierplan.workspaces.seeds import generator
 
 LEAST = 4
 """Methods that a column needs: of fewer, no order is unlikely."""
-
-COLUMNS = [
-    "study",
-    "table",
-    "place",
-    "metric",
-    "methods",
-    "quantity",
-    "printed",
-    "low95_predicted",
-    "high95_predicted",
-    "position",
-]
 
 _EXACT = 1e-9
 """Numbers this near are equal."""
@@ -65,11 +49,12 @@ def compare_columns(
             if len(group) >= LEAST:
                 where = dict(zip(column, values))
                 told = [*name.split("/"), json.dumps(where), metric, len(group)]
-                same = dict(zip(COLUMNS, told))
+                same = dict(zip(COLUMNS_OF["order_and_level"], told))
                 together = paired or bool((group["draws"] > 1).all())
+                # The file was once named wholes: its name seeds the draws, so it stays.
                 rng = generator(f"{name}/{describe_cell(where, where)}/{metric}/wholes")
                 rows += [same | row for row in _compare_column(group, together, rng)]
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.DataFrame(rows, columns=COLUMNS_OF["order_and_level"])
 
 
 def draw_means(
@@ -84,6 +69,7 @@ def draw_means(
     if together:
         # One table, so that a repeat is drawn with the runs of all methods.
         parts = [pd.concat(parts, axis=1, join="inner")]
+    # Where the paper does not state its number of runs, single runs are compared, as in each cell.
     size = min(int(group["n_published"].fillna(1).min()), statistics.MOST_PREDICTED)
     means = []
     for values in (part.to_numpy().reshape(len(part), -1) for part in parts):

@@ -132,6 +132,7 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
         changed = folders[folder] if isinstance(folders, dict) else {}
         stamp = _find_stamp(folder, changed)
         known = stamp.exists()
+        # Code that was checked before is loaded by the jobs that need it, not at every start.
         if not known:
             _load_code(folder)
         study, faults, lost = _read(folder, changed)

@@ -8,7 +8,7 @@ from pivots import pivot_of
 from scipy import stats
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.numbers import comparison, wholes
+from bezierplan.analysis.numbers import comparison, order_and_level
 from bezierplan.analysis.results import Results
 from bezierplan.places import TREE
 from bezierplan.workspaces.grid import from_lines
@@ -67,7 +67,9 @@ def judged(ours, means, paired=True):
     printed = printed.assign(n=PAPER, unit="m", value=np.round(means, 4))
     spec = pivot_of(SPEC)
     compared = comparison.compare(ours, spec, printed, {}, [], "s/table1")
-    return wholes.compare_columns(ours, spec, compared, "s/table1", paired).set_index("quantity")
+    return order_and_level.compare_columns(ours, spec, compared, "s/table1", paired).set_index(
+        "quantity"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +113,7 @@ def test_an_experiment_prints_the_mean_of_the_runs_that_count():
     group = pd.DataFrame({"n_published": [PAPER] * 5, "decimals": 2})
     runs = pd.MultiIndex.from_product([["long"], range(20)])
     group["by_run"] = [pd.Series(column, runs) for column in values.T]
-    means, tail = wholes.draw_means(group, True, np.random.default_rng(3))
+    means, tail = order_and_level.draw_means(group, True, np.random.default_rng(3))
     assert (means == 3).all()
     assert 0.99 < len(means) / statistics.DRAWS < 1, "in 1 of 1,024 or so no run counts"
     assert tail < statistics.TAIL
@@ -125,7 +127,7 @@ def test_columns_of_few_methods_and_few_runs_are_no_wholes(ours):
 
 def test_rank_correlation():
     first, second, third = np.round(np.random.default_rng(4).normal(size=(3, 8)), 0)
-    found = wholes.compute_rank_correlations(np.array([first, second, np.ones(8)]), third)
+    found = order_and_level.compute_rank_correlations(np.array([first, second, np.ones(8)]), third)
     expected = [stats.spearmanr(each, third).statistic for each in (first, second)]
     assert found[:2] == pytest.approx(expected)
     assert np.isnan(found[2])
