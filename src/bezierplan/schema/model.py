@@ -100,9 +100,11 @@ def parse(model: type[M], content: Any, location: str) -> M:
     return sound
 
 
-def parse_sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
-    """Return the sound part of a file's content as a model, the faults of the rest, and the names
-    of the entries that are left out for them. Raises Fault if too little is left.
+def parse_sound_part(
+    model: type[M], content: Any, location: str
+) -> tuple[M, list[str], list[tuple[str, str]]]:
+    """Return the sound part of a file's content as a model, the faults of the rest, and section and
+    name of the entries that are left out for them. Raises Fault if too little is left.
     """
     try:
         return model.model_validate(content), [], []
@@ -113,7 +115,11 @@ def parse_sound_part(model: type[M], content: Any, location: str) -> tuple[M, li
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
     try:
-        return model.model_validate(content), fault.lines, [str(each[-1]) for each in places]
+        return (
+            model.model_validate(content),
+            fault.lines,
+            [(str(each[0]), str(each[-1])) for each in places],
+        )
     except ValidationError:
         raise fault from None
 

@@ -59,11 +59,14 @@ class Checks:
     """Check a study whose files are each valid on their own. The methods raise Fault without the
     place, which `at` adds.
 
-    invalid: names of entries that are left out because they are not valid.
+    lost: section and name of entries that are left out because they are not valid.
     """
 
-    def __init__(self, study: Study, invalid: Iterable[str] = ()) -> None:
-        self.study, self.invalid = study, {*invalid}
+    def __init__(self, study: Study, lost: Iterable[tuple[str, str]] = ()) -> None:
+        lost = {*lost}
+        self.study, self.invalid = study, {name for _, name in lost}
+        # A method with a fault may have any settings.
+        self.complete = "methods" not in {section for section, _ in lost}
         self.faults: dict[str, tuple[str, ...]] = {}
         self.words, self.broken_files = {"generation"}, set()
         self._place = ()
@@ -140,9 +143,9 @@ class Checks:
         study = self.study
         with self.at(shorten_path(study.folder / "experiments.yaml")):
             # Methods come first: all that follows loads their planners.
+            declared = len(study.methods)
             self.check_entries("methods", study.methods, self.check_method)
-            # A planner that has a fault may have any settings.
-            self.complete = not self.invalid
+            self.complete &= len(study.methods) == declared
             with self.at():
                 self.check_shared_settings()
             if self.complete:
@@ -592,7 +595,7 @@ class Checks:
             # True equals 1 in Python, but is another value of a setting.
             if identify(value) not in map(identify, assumption.alternatives):
                 raise Fault(
-                    f"values: {key}: {value}: no alternative; one of {assumption.alternatives}"
+                    f"values: {key}: {value!r}: no alternative; one of {assumption.alternatives}"
                 )
             for method in study.list_governed_methods(assumption):
                 # Two assumptions about one setting of a method could not both hold.

@@ -223,9 +223,11 @@ def _load_code(folder: Path) -> None:
             raise Fault(f"{name}: {describe_in_one_line(error)}") from None
 
 
-def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
+def _read(
+    folder: Path, changes: Mapping[str, Any]
+) -> tuple[Study, list[str], list[tuple[str, str]]]:
     """Read the study in a folder as far as its files are sound. Return it with the faults, and with
-    the names of the entries that are left out for these. Raises Fault if too little is left.
+    section and name of the entries that are left out for these. Raises Fault if too little is left.
 
     changes: settings that take the place of those of the same name in experiments.yaml; those of
     one planner are replaced one by one.
@@ -244,8 +246,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             broken += fault.lines
     if broken:  # What others say of such a file's names would follow from it.
         raise Fault(*broken, *faults)
-    if not faults and (strange := _find_strange_files(folder, content["workspaces"])):
-        raise Fault(*strange)
+    faults = [*_find_strange_files(folder, content["workspaces"]), *faults]
     for name, value in changes.items():
         own = content["settings"].get(name)
         # The settings of one planner are a mapping: those that stay keep their values.
