@@ -311,3 +311,16 @@ def test_numbers_of_all_studies_count_the_study(results):
     numbers = pd.read_csv(results.parent / "numbers.csv")
     positions = numbers.loc[numbers["counted"], "position"]
     assert positions.value_counts().to_dict() == {"inside": 10, "below": 2}
+
+
+def test_a_map_of_one_s_own_may_be_named_like_the_template_s(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "room.txt").write_text("....\n.##.\n....\n....\n")
+    ends = ["--start", "0.5,0.5", "--target"]
+    with pytest.raises(SystemExit):
+        main(["new", "far", "--from", "room.txt", *ends, "99,3.5"])
+    assert "--target: [99.0, 3.5]: outside" in capsys.readouterr().err
+    assert not (tmp_path / "far").exists()
+    main(["new", "own", "--from", "room.txt", *ends, "3.5,3.5"])
+    main(["check-study", "own"])
+    assert (tmp_path / "own/room.txt").read_text() == (tmp_path / "room.txt").read_text()

@@ -252,8 +252,9 @@ FAULTS = {
     "cell": ([GAPS, *ENDS, "--cell", "inf"], "--cell: inf: expected the side of a cell"),
     "folder": (
         [GAPS, *ENDS, "--out", "nowhere/path.svg"],
-        "nowhere/path.svg: No such file",
+        "--out: nowhere/path.svg: nowhere is no folder",
     ),
+    "step": ([GAPS, *ENDS, "--out", "path.csv", "--step", "1e-9"], "--step: .*expected at most"),
     "a radius below 0": (
         [GAPS, *ENDS, "--robot-radius", "-1"],
         "--robot-radius: -1; expected 0 or a number of at least 1e-06",

@@ -64,6 +64,10 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
     [
         ("problem,points\n0_15,0 0 1 1\n", "columns: curve: unknown"),
         ("problem,curve,points\nnope,polyline,0 0 1 1\n", "problem: nope: unknown"),
+        ("problem,curve,points\n0_15,polyline,0 0 1\n", "row 1: points: expected x y"),
+        ("problem,curve,points\n0_15,line,0 0 1 1\n", "row 1: curve: line: unknown"),
+        ("problem,curve,points\n0_15,polyline,0 0 1 1\n", "0_15: path: start"),
+        ("", "is empty"),
     ],
 )
 def test_a_file_of_paths_that_cannot_be_scored_is_told_in_one_line(text, word, tmp_path, capsys):

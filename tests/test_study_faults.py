@@ -129,6 +129,8 @@ def test_equal_faults_of_several_entries_and_what_fails_after_them_are_all_told(
     folder = copy("walks", tmp_path)
     for name, key, more in (
         ("experiments.yaml", "problems:", PROBLEMS),
+        ("experiments.yaml", "problems:\n", "problems:\n  bad: {workspace: room, start: 3}\n"),
+        ("experiments.yaml", "settings: {tries: 40}", "settings: {trys: 40}"),
         ("artefacts.yaml", "tables:", f"tables:\n  one{TABLE}\n  two{TABLE}"),
     ):
         text = (folder / name).read_text()
@@ -137,8 +139,9 @@ def test_equal_faults_of_several_entries_and_what_fails_after_them_are_all_told(
     lines = faults(folder)
     for part in ("workspace: rom: unknown", "target: [99, 7.5]: outside", "metric: lenght"):
         assert sum(part in line for line in lines) == 2
-    assert "ZeroDivisionError" in lines[6]
-    assert len(lines) == 7
+    assert sum("start: 3" in line or "trys: unknown" in line for line in lines) == 2
+    assert sum("ZeroDivisionError" in line for line in lines) == 1
+    assert len(lines) == 9
 
 
 def test_studies_for_tests_have_no_fault():

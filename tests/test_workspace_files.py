@@ -77,6 +77,10 @@ POLYGON_FAULTS = {
         geojson(border=closed((13.377, 52.516), (13.379, 52.516), (13.379, 52.517))),
         "places about 13.377, 52.516 with an extent of 0.002 look like degrees; expected x and y",
     ),
+    "degrees of a country": (
+        geojson(border=closed((6, 47), (15, 47), (15, 55))),
+        "places about 6, 47 with an extent of 9 look like degrees",
+    ),
     "border crossing itself": (
         geojson(border=closed((0, 0), (10, 10), (10, 0), (0, 10))),
         r"feature 0 \(border\): Self-intersection",
