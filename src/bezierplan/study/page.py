@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import EVIDENCE, list_files, sort_as_printed
+from bezierplan.figures.page import EVIDENCE, PICTURES, list_files, sort_as_printed
 from bezierplan.figures.page.page_job import (
     ArtefactView,
     ExperimentView,
@@ -67,7 +67,7 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     ]
     return Page(
         PageJob(scale, shown, known),
-        sources=[*list_files(), *(EVIDENCE if known else [])],
+        sources=[*list_files(), *([*EVIDENCE, *PICTURES.values()] if known else [])],
         shows=find_results(studies, scale, root),
         code=[module for own in studies.values() for module in own.code_for("metrics")],
     )

@@ -14,6 +14,8 @@ EVIDENCE = [
     for name in ("numbers", "claims", "methods", "claim_checks", "order_and_level")
 ]
 """What many runs say of all studies: tables of `reader.Evidence`."""
+PICTURES = {name: str(OUTCOME / f"{name}.png") for name in ("numbers", "numbers_tall")}
+"""All printed numbers beside our ranges, for wide and for narrow screens."""
 
 
 def list_files() -> list[str]:

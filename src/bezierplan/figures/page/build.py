@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.sentences import describe_metric
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.verification import describe_version
-from bezierplan.figures.page import HERE, addresses, charts, overview, reader, runs
+from bezierplan.figures.page import HERE, PICTURES, addresses, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import Labels, PageJob
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
@@ -72,6 +72,8 @@ def gather_content(
         about_scale=overview.describe_scale(job.scale, repeats, bool(evidence)),
         made_by=verified["made_by"] if verified else describe_version(),
         headline=_write_headline(job, tables, evidence),
+        # A study with other settings is not the one in the picture.
+        pictured=bool(evidence) and {*evidence.numbers["study"]} <= {*job.outcome},
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
@@ -167,6 +169,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
         "grid": build_grid,
         "marks": MARKS,
+        "picture": lambda name: base64.b64encode(Path(PICTURES[name]).read_bytes()).decode(),
         "root": "",  # before the paths of files of results
         "meaning": lambda metric: describe_metric(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
