@@ -164,8 +164,10 @@ def change_gene(
     """Change, in place, a random gene of a chromosome: by `flip_bit`, or to a random allele, maybe
     the old one.
     """
-    gene = draw_integer(rng, 0, len(chromosome))
     if flips:
-        flip_bit(rng, chromosome, gene, bits, legal)
+        flip_bit(rng, chromosome, draw_integer(rng, 0, len(chromosome)), bits, legal)
     else:
-        chromosome[gene] = alleles[draw_integer(rng, 0, len(alleles))]
+        # Python draws what stands on the right first: the allele, and then the gene.
+        chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[
+            draw_integer(rng, 0, len(alleles))
+        ]
