@@ -248,3 +248,7 @@ def test_fields_that_are_empty_do_not_count():
     assert digests._nest(with_more) == digests._nest(function)
     with_more.newer = [ast.Constant(None)]
     assert digests._nest(with_more) != digests._nest(function)
+    (text,) = ast.parse("f'{a:>{b}}'").body
+    ended = copy.deepcopy(text)
+    ended.value.values[0].format_spec.values.append(ast.Constant(""))
+    assert digests._nest(ended) == digests._nest(text)

@@ -152,6 +152,9 @@ def _nest(part: Any) -> tuple | str:
     """Return a syntax tree as nested tuples, without fields that are empty: newer Pythons have more
     of these.
     """
+    if isinstance(part, ast.JoinedStr):
+        # Python 3.12.1 ends some formats with an empty text.
+        part = ast.JoinedStr([each for each in part.values if getattr(each, "value", None) != ""])
     if isinstance(part, ast.AST):
         fields = ((name, _nest(value)) for name, value in ast.iter_fields(part))
         return (type(part).__name__, *(each for each in fields if each[1] not in ("None", ())))
