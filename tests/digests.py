@@ -6,8 +6,10 @@ bits of a library differ too.
 """
 
 import hashlib
+import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -48,13 +50,14 @@ def digest(part: pd.DataFrame) -> str:
 
 
 def find(scale: str) -> Digests:
-    """Return the digests of a scale: of scale smoke also of the scenarios and first runs of all
-    experiments, which no file of results holds; of another of all its runs, bounds and claims.
+    """Return the digests of a scale: of scale smoke also of the scenarios, settings and first runs
+    of all experiments, which no file of results holds; of another of all its runs, bounds and
+    claims.
     """
     folder, found = TREE / "results" / scale, {}
     for key, study in studies().items():
         parts = {**tables(folder / key), **figures(study, folder / key)}
-        parts |= scenarios(study) if scale == "smoke" else results(folder / key)
+        parts |= scenarios(study) | settings(study) if scale == "smoke" else results(folder / key)
         found |= {(key, *name): digest(part) for name, part in parts.items()}
     if scale != "smoke":
         for name, chunks in list_run_tables(folder).items():
@@ -88,6 +91,24 @@ def scenarios(study: Study) -> Parts:
             planned = [execution.identify_run(chunk, *each) for each in others]
             found["first run", f"{name}/{method}"] = _plain(pd.DataFrame([run, *planned]))
     return found
+
+
+def settings(study: Study) -> Parts:
+    """Return what a study's files say of experiments, of panels and of the baseline's comparison:
+    some of it shows at another scale alone, or in no data of a figure.
+    """
+    said: dict[tuple[str, str], Any] = {
+        ("settings", name): [each.plain(), [study.problems[key].plain() for key in each.problems]]
+        for name, each in study.experiments.items()
+    }
+    for name, figure in study.figures.items():
+        said["panels", name] = [panel.plain() for panel in figure.panels]
+    if study.baseline_comparison:
+        said["settings", "baseline_comparison"] = study.baseline_comparison.plain()
+    return {
+        place: pd.DataFrame([json.dumps(each, sort_keys=True, default=str)])
+        for place, each in said.items()
+    }
 
 
 def tables(folder: Path) -> Parts:
