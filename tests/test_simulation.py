@@ -413,3 +413,15 @@ def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
     points = np.array([[1.0, 10.0], [20.0 + beyond, 10.0], [1.0, 10.0]])
     verdict = motion_check.check(Motion(points, np.array([0.0, 19.0, 38.0])), circles())
     assert math.isfinite(verdict.collision_at) == outside
+
+
+@pytest.mark.parametrize(
+    ("dx", "dy", "ex", "ey", "nearest"),
+    [
+        (2.0, 1.0, -4.0, 0.0, 1.0),  # it passes by: the foot of the perpendicular
+        (2.0, 1.0, 3.0, 1.0, 5.0**0.5),  # it goes away: where it is
+        (5.0, 1.0, -2.0, 0.0, 10.0**0.5),  # it does not come as far: where it ends
+    ],
+)
+def test_nearest_place_on_a_step_to_the_origin(dx, dy, ex, ey, nearest):
+    assert motion_check.measure_nearest(dx, dy, ex, ey) == pytest.approx(nearest)
