@@ -309,7 +309,8 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
     functions = study_code.load_functions(own.code_for("functions"))
-    own_claims = [Claim.model_validate(claim).select_primary_variant()]
+    whole = Claim.model_validate(claim)
+    own_claims = [whole.but(variants={name: own[:1] for name, own in whole.variants.items()})]
     repeats = dict.fromkeys(results, 10)
     of_study = for_claims(key)._replace(claims=own_claims, repeats=repeats, labels={})
     return judge.judge_claims(Material(of_study, results, printed or published(key), functions))

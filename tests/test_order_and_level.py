@@ -135,7 +135,7 @@ def test_rank_correlation():
 
 def test_printed_means_of_tharwat2018():
     """Under our default reading ours may have their order."""
-    kept = pd.read_csv(TREE / outcome.KEPT / outcome.WHOLES)
+    kept = pd.read_csv(TREE / outcome.KEPT / outcome.ORDERS)
     found = kept.query("study == 'tharwat2018' and metric == 'objective'")
     order = found.set_index(["table", "quantity"]).loc[("table3", "order")]
     assert (order["printed"], order["position"]) == (pytest.approx(0.429, abs=1e-3), "inside")

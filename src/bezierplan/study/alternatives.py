@@ -140,8 +140,9 @@ def keep_claims(study: Study, claims: list[Claim]) -> Study:
     primary variant, and with only the runs that these checks name.
     """
     claims = [
-        claim.select_primary_variant().but(
-            checks=[check for check in claim.checks if check.primary]
+        claim.but(
+            variants={column: values[:1] for column, values in claim.variants.items()},
+            checks=[check for check in claim.checks if check.primary],
         )
         for claim in claims
     ]

@@ -200,13 +200,12 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
         if count < 2:
             continue
         numbers = [possible.read_printed(text) for text in texts]
+        adds = possible.can_be_ranks(numbers)
         added, total = float(sum(each.value for each in numbers)), count * (count + 1) // 2
         arithmetic = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
         location = describe_cell(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        yield build_audit_row(
-            item, location, rule, added, total, possible.can_be_ranks(numbers), arithmetic
-        )
+        yield build_audit_row(item, location, rule, added, total, adds, arithmetic)
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
@@ -215,7 +214,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
             yield build_audit_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
         sizes = group["n"].unique()
         # The test needs true mean ranks, all of the same number of runs.
-        if possible.can_be_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
+        if adds and len(sizes) == 1 and sizes[0] > 1:
             n = int(sizes[0])
             apart, critical, chi_square, p, least = compute_friedman(group["value"].to_numpy(), n)
             rule = (

@@ -1,7 +1,7 @@
 """The model of a sentence of a paper: its checks, each a model of its own kind (`list_kinds`)."""
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -92,10 +92,6 @@ class Claim(Model):
                     f"variants: {column}: expected values, or lists of them that are equally long"
                 )
         return self
-
-    def select_primary_variant(self) -> Self:
-        """Return the same claim without its other variants."""
-        return self.but(variants={column: values[:1] for column, values in self.variants.items()})
 
     @property
     def artefacts(self) -> list[str]:

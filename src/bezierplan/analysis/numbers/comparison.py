@@ -279,7 +279,7 @@ def _compute_row(row: dict[str, Any], keys: list[str], name: str) -> dict[str, A
     """Compute our side of one row, and the published number's position in it; nothing for a
     published number without runs of ours.
     """
-    if pd.isna(row["runs"]):
+    if pd.isna(row["size"]):
         return {"n_ours": 0, "n_asked": 0, "position": NO_RANGE, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]

@@ -44,7 +44,7 @@ def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.
 class Cell(NamedTuple):
     """One statistic of an entry of `values` over runs with equal keys.
 
-    runs: how many they are. draws: of random maps; 0 on others. share_feasible, bound, gap: of all
+    draws: of random maps; 0 on others. share_feasible, bound, gap: of all
     these runs, the bound (median) and gap (median of the feasible ones) of the metric's kind of
     length. least, most: the range of the metric for one run (`least` of an entry is stronger than
     that of its metric). value: the entry's number. size: how many runs satisfy the entry's
@@ -53,7 +53,6 @@ class Cell(NamedTuple):
     numbers as one array for each value of the column `within`, None without that key.
     """
 
-    runs: int
     draws: int
     share_feasible: float
     bound: float
@@ -145,7 +144,6 @@ def _compute_cell(
         # Tuples, because pandas would expand lists of arrays.
         groups = tuple(np.sort(numbers[units == unit]) for unit in np.unique(units))
     return Cell(
-        runs=len(places),
         draws=runs["layout"].iloc[places].nunique() if "layout" in runs else 0,
         share_feasible=runs["feasible"].to_numpy()[places].mean(),
         bound=_compute_median(measures.bound[places]),
