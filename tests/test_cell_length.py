@@ -135,7 +135,8 @@ def test_legs_from_grid_line_to_grid_line_touch_the_cells_of_their_samples():
         for row, column in np.ndindex(12, 12):
             occupied = grid.occupied.copy()
             occupied[row, column] = True
-            assert cell_length.is_free_leg(occupied, *ends) == ((row, column) not in touched), (
+            free = cell_length.is_free_leg(occupied, *leg.points)
+            assert free == ((row, column) not in touched), (
                 ends,
                 row,
                 column,

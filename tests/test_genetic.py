@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from bezierplan.planners.parts.genetic import (
+    change_gene,
     complement_bit,
     draw_parents,
     flip_bit,
-    redraw_gene,
     swap_tails,
 )
 
@@ -49,7 +49,7 @@ def test_redrawn_genes_are_uniform_over_genes_and_alleles():
     rng, alleles, counts = np.random.default_rng(0), np.array([7, 9, 300]), np.zeros((4, 3))
     for _ in range(6000):
         chromosome = np.full(4, -1)
-        redraw_gene(rng, chromosome, alleles)
+        change_gene(rng, chromosome, 9, alleles, np.ones(512, dtype=bool), False)
         (gene,) = np.flatnonzero(chromosome != -1)
         counts[gene] += alleles == chromosome[gene]
     assert stats.chisquare(counts.ravel()).pvalue > 1e-3

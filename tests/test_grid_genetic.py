@@ -11,6 +11,7 @@ from studies import planned
 
 from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.planners import grid_genetic
+from bezierplan.planners.parts.cell_paths import cut_loops
 
 plan = partial(planned, "elhoseny2017", "ga")
 
@@ -94,7 +95,7 @@ def is_path(cells, walls, columns):
 
 def test_loops_are_cut_from_the_last_visit_on():
     rng = np.random.default_rng(0)
-    last_visit = np.empty(30, dtype=np.int64)
+    marks = np.zeros(30, dtype=np.int64)
     for _ in range(100):
         walk = rng.integers(0, 30, 60)
         expected, k = [], 0
@@ -102,7 +103,7 @@ def test_loops_are_cut_from_the_last_visit_on():
             expected.append(walk[k])
             k = max(np.flatnonzero(walk == walk[k])) + 1
         cut = walk.copy()
-        count = grid_genetic._cut_loops(cut, len(cut), last_visit)
+        count = cut_loops(cut, marks)
         assert cut[:count].tolist() == expected
         assert len(set(expected)) == count
 

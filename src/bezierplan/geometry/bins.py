@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 
 # Bins are no smaller, in units, so that their margins are wider than the checker's tolerance.
 _LEAST_SIDE = 1e-4
@@ -36,14 +36,14 @@ def sort_into_bins(edges: np.ndarray) -> Bins:
     width, height = (ends.max(axis=0) - low).tolist()
     # As many squares of this side as there are edges fill their box.
     side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
-    empty = np.zeros(0, dtype=np.int64)
+    empty = np.zeros(0, np.int64)
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
     first, members = _sort(edges, bins)
     return bins._replace(first=first, members=members)
 
 
 @compile_kernel
-def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
+def _sort(edges, bins):
     """Return where the members of each bin begin, and the numbers of its edges, ascending."""
     # A first entry tells the compiler the type of the lists; it is dropped below.
     places, passing = [0], [0]
@@ -70,10 +70,13 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
 
 @allocation_free
 def rows_near(low: float, high: float, bins: Bins) -> tuple[int, int]:
-    """Return the first and the last row of bins between two ordinates, the smaller one first."""
+    """Return the first and the last row of bins between two ordinates, the smaller one first.
+
+    Beside all bins the last row is the one before the first, so `list_members` finds none.
+    """
     begin = int((low - bins.low[1]) // bins.side)
     end = int((high - bins.low[1]) // bins.side)
-    return max(begin, 0), min(end, bins.rows - 1)
+    return min(max(begin, 0), bins.rows), max(min(end, bins.rows - 1), -1)
 
 
 @allocation_free
@@ -91,3 +94,13 @@ def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple
         y, other = a[1] + enter * (b[1] - a[1]), a[1] + leave * (b[1] - a[1])
         low, high = max(low, min(y, other)), min(high, max(y, other))
     return rows_near(low - margin, high + margin, bins)
+
+
+@compile_inline
+def list_members(column: int, low: int, high: int, bins: Bins) -> np.ndarray:
+    """List the edges in the bins of a column from one row to another; an edge that passes through
+    several of them is listed as often.
+    """
+    # Bins are stored column by column, so their members follow each other.
+    first = bins.first[column * bins.rows + low]
+    return bins.members[first : bins.first[column * bins.rows + high + 1]]

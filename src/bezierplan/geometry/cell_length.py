@@ -84,13 +84,6 @@ def cut(pieces: np.ndarray, points: int) -> None:
         step //= 2
 
 
-def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, ..., 1."""
-    x, y, t, power = np.empty((4, last + 1))
-    write_samples(points, last, 0, 1, last + 1, x, y, t, power)
-    return x, y
-
-
 def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
     degree + 1, 2).
@@ -103,7 +96,9 @@ def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         shorter = np.repeat(piece[None], CUT if points > HIGH else 1, axis=0)
         cut(shorter, points)
         for each in shorter:
-            x, y = sample(each, count_parts(each))
+            last = count_parts(each)
+            x, y, t, power = np.empty((4, last + 1))
+            write_samples(each, last, 0, 1, last + 1, x, y, t, power)
             xs.append(x)
             ys.append(y)
     return np.concatenate(xs), np.concatenate(ys)
@@ -159,7 +154,7 @@ def write_samples(
 
 
 @allocation_free
-def _find_cell(coordinate: float, before: int) -> int:
+def _find_cell(coordinate, before):
     """Return the column or row of a coordinate; near a grid line, the previous sample's if
     close.
     """
@@ -175,7 +170,7 @@ def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.nda
     Consecutive vertices are less than a cell apart. A step is diagonal only where the polyline
     passes through a corner of cells.
     """
-    columns, rows = np.empty((2, 2 * len(x)), dtype=np.int64)
+    columns, rows = np.empty((2, 2 * len(x)), np.int64)
     count = write_touched_cells(x, y, columns, rows)
     return columns[:count], rows[:count]
 
@@ -217,15 +212,16 @@ def count_occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.nda
 
 
 @allocation_free
-def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Tell whether all cells that a straight leg touches are free; cells outside the grid are not
-    free.
+def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> bool:
+    """Tell whether all cells that a straight leg between two points (2,) touches are free; cells
+    outside the grid are not free.
 
     These are the cells of `list_touched_cells`, found without samples: from grid line to grid line.
     A leg counts as passing through a corner if it comes so close that no sample could tell the
     difference, so no leg is free here that is not free there.
     """
     rows, columns = occupied.shape
+    (x0, y0), (x1, y1) = start, end
     column, row = math.floor(x0), math.floor(y0)
     last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
     if (
@@ -258,7 +254,7 @@ def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float
 
 
 @allocation_free
-def _last_cell(first: float, last: float) -> int:
+def _last_cell(first, last):
     """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
@@ -283,19 +279,13 @@ def measure_cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     length = 0.0
     i = 0
     while i < len(columns) - 1:
-        if (
-            i + 2 < len(columns)
-            and abs(columns[i + 2] - columns[i]) == 1
-            and abs(rows[i + 2] - rows[i]) == 1
-        ):
-            one_step = columns[i + 1] == columns[i] or rows[i + 1] == rows[i]
-            if one_step and (columns[i + 2] == columns[i + 1] or rows[i + 2] == rows[i + 1]):
-                length += DIAGONAL
-                i += 2
-                continue
-        diagonal = columns[i + 1] != columns[i] and rows[i + 1] != rows[i]
+        # Two steps to a cell that shares a corner are straight ones, for none stays where it is.
+        step = 1
+        if i + 2 < len(columns):
+            step += abs(columns[i + 2] - columns[i]) == 1 and abs(rows[i + 2] - rows[i]) == 1
+        diagonal = columns[i + step] != columns[i] and rows[i + step] != rows[i]
         length += DIAGONAL if diagonal else STRAIGHT
-        i += 1
+        i += step
     return length
 
 

@@ -161,7 +161,7 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     eq. 2; tharwat2018, eq. 2).
     """
     k = np.arange(degree + 1)
-    binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
+    binomial = np.array([math.comb(degree, i) for i in k], float)
     return binomial * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
 
 

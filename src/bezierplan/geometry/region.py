@@ -224,7 +224,7 @@ def _build_grid_region(grid: Grid) -> GridRegion:
     from bezierplan.geometry.bins import sort_into_bins
 
     cells = add_wall(grid.occupied)
-    blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), dtype=bool)
+    blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), bool)
     blocked[::2, ::2] = cells
     # A line or vertex is blocked only if all cells beside it are: a path may run along a wall.
     blocked[1::2, ::2] = cells[:-1] & cells[1:]
@@ -238,7 +238,7 @@ def _build_grid_region(grid: Grid) -> GridRegion:
 
     return GridRegion(
         float(grid.cell),
-        np.array(grid.origin, dtype=float),
+        np.array(grid.origin, float),
         blocked,
         # Sums of what lies below and to the left of each corner.
         np.pad(blocked.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0))),
@@ -265,9 +265,9 @@ def _build_circle_region(circles: Circles) -> CircleRegion:
     edges = border_edges(circles.bounds)
     # Copies: a region shares no memory with the workspace that a planner holds.
     return CircleRegion(
-        np.array(circles.centres, dtype=float).reshape(-1, 2),
-        np.array(circles.radii, dtype=float),
-        np.array(circles.bounds, dtype=float),
+        np.array(circles.centres, float).reshape(-1, 2),
+        np.array(circles.radii, float),
+        np.array(circles.bounds, float),
         edges,
         sort_into_bins(edges),
     )
@@ -279,7 +279,7 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
 
     cornered = [_list_corners(ring) for ring in list_rings(polygons.free())]
     begin = np.concatenate([np.empty((0, 2)), *cornered])
-    following = np.empty(len(begin), dtype=np.int64)
+    following = np.empty(len(begin), np.int64)
     first = 0
     for ring in cornered:
         following[first : first + len(ring)] = first + np.roll(np.arange(len(ring)), -1)

@@ -19,7 +19,7 @@ from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import NOT_NEGATIVE, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -44,7 +44,7 @@ _MOVE_SHARE, _REMOVAL_SHARE, _INSERTION_SPREAD, _OPPONENTS, _BLOCKED = 0.6, 0.2,
 class Settings(NamedTuple):
     """Settings of colony and evolution; the papers give none, these are textbook ones."""
 
-    cycles: Annotated[int, Range(0), About("cycles of the colony for one point")]
+    cycles: Annotated[int, NOT_NEGATIVE, About("cycles of the colony for one point")]
     reach: Annotated[
         float,
         Range(0, 1),
@@ -52,15 +52,15 @@ class Settings(NamedTuple):
     ]
     visited_weight: Annotated[
         float,
-        Range(0),
+        NOT_NEGATIVE,
         About("weight of cones around the points chosen so far, as high and wide as the reach"),
     ]
     population: Annotated[
         int, Range(1), About("copies of the path that evolve, each with one child a generation")
     ]
-    generations: Annotated[int, Range(0), About("generations")]
+    generations: Annotated[int, NOT_NEGATIVE, About("generations")]
     spread: Annotated[
-        float, Range(0), About("standard deviation of a move, as a share of the smaller side")
+        float, NOT_NEGATIVE, About("standard deviation of a move, as a share of the smaller side")
     ]
 
 
@@ -88,7 +88,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Hernandez-Belmonte (2015).
     """
     grid = problem.workspace
-    start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    start, target = grid.in_cells(np.array([problem.start, problem.target], float))
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     # One point cannot be shortened.
     if problem.start == problem.target:
@@ -96,11 +96,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     rules = settings._replace(
         reach=settings.reach * smaller_side, spread=settings.spread * smaller_side
     )
-    points, history = _search(*rng.spawn(2), grid.occupied, start, target, rules)
+    colony, evolution = rng.spawn(2)
+    path = _build_first_path(colony, grid.occupied, start, target, rules)
+    if len(path) == 0:
+        return Plan.of_one(None, np.inf, "no way", {"first_length": np.inf, "turns": 0})
+    points, history = _evolve(evolution, grid.occupied, _cut_short(grid.occupied, path), rules)
     history *= grid.cell
-    extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
-    if len(points) == 0:
-        return Plan.of_one(None, np.inf, "no way", extra)
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
     return Plan(
@@ -110,19 +111,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         evaluations=1 + settings.population * settings.generations,
         history=history,
         stop="generations",
-        extra=extra,
+        extra={"first_length": float(history[0]), "turns": len(points) - 2},
     )
-
-
-@compile_kernel
-def _search(colony_rng, evolution_rng, occupied, start, target, rules):
-    """Return the points (points, 2) of the path, none if not found, and the least length so far
-    (generations + 1,).
-    """
-    path = _build_first_path(colony_rng, occupied, start, target, rules)
-    if len(path) == 0:
-        return path, np.full(1, np.inf)
-    return _evolve(evolution_rng, occupied, _cut_short(occupied, path), rules)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -138,8 +128,7 @@ def _build_first_path(rng, occupied, start, target, rules):
     path = np.empty((_MOST_POINTS + 2, 2))
     path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
     for count in range(1, _MOST_POINTS + 2):
-        last = path[count - 1]
-        if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
+        if is_free_leg(occupied, path[count - 1], target):
             path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
         if (
@@ -158,7 +147,7 @@ def _append_next_point(rng, occupied, target, path, count, rules):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
         high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + rules.reach)
     x, cost = np.empty((_SOURCES, 2)), np.empty(_SOURCES)
-    failures = np.zeros(_SOURCES, dtype=np.int64)
+    failures = np.zeros(_SOURCES, np.int64)
     point = np.empty(2)
     best, best_cost = path[count], np.inf
     for i in range(_SOURCES):
@@ -213,39 +202,34 @@ def _compute_cost(occupied, target, path, count, point, rules):
     """Return the cost of the next point: the distance to it and from it to the target, and cones
     over the cells around the points chosen before.
     """
-    last = path[count - 1]
-    if not is_free_leg(occupied, last[0], last[1], point[0], point[1]):
+    if not is_free_leg(occupied, path[count - 1], point):
         return _UNSEEN
     height = 0.0
-    column, row = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
+    cell = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
     for chosen in range(1, count):
-        height += max(
-            0.0, rules.reach - _measure_leg(path[chosen, 0], path[chosen, 1], column, row)
-        )
+        height += max(0.0, rules.reach - _measure_leg(path[chosen], cell))
     return (
-        _STEP_WEIGHT * _measure_leg(last[0], last[1], point[0], point[1])
-        + _measure_leg(point[0], point[1], target[0], target[1])
+        _STEP_WEIGHT * _measure_leg(path[count - 1], point)
+        + _measure_leg(point, target)
         + rules.visited_weight * height
     )
 
 
 @allocation_free
-def _measure_leg(x0, y0, x1, y1):
+def _measure_leg(start, end):
     """Return the length of a leg between two points."""
-    return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
+    return np.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2)
 
 
 @compile_kernel
 def _cut_short(occupied, path):
     """Return a path without unnecessary points: each is joined to the last one that it sees."""
-    kept = np.zeros(len(path), dtype=np.int64)
+    kept = np.zeros(len(path), np.int64)
     count = 1
     while kept[count - 1] < len(path) - 1:
         here = kept[count - 1]
         seen = len(path) - 1
-        while seen > here + 1 and not is_free_leg(
-            occupied, path[here, 0], path[here, 1], path[seen, 0], path[seen, 1]
-        ):
+        while seen > here + 1 and not is_free_leg(occupied, path[here], path[seen]):
             seen -= 1
         kept[count] = seen
         count += 1
@@ -333,17 +317,16 @@ def _price_path(occupied, points):
     """Return the length of a path (points, 2), with a penalty for each blocked leg."""
     price = 0.0
     for p in range(len(points) - 1):
-        x0, y0 = points[p, 0], points[p, 1]
-        x1, y1 = points[p + 1, 0], points[p + 1, 1]
-        length = _measure_leg(x0, y0, x1, y1)
-        price += length if is_free_leg(occupied, x0, y0, x1, y1) else length + _BLOCKED
+        start, end = points[p], points[p + 1]
+        length = _measure_leg(start, end)
+        price += length if is_free_leg(occupied, start, end) else length + _BLOCKED
     return price
 
 
 @compile_kernel
 def _count_wins(rng, cost):
     """Count, for each path (n,), the random opponents that it is not worse than."""
-    wins = np.zeros(len(cost), dtype=np.int64)
+    wins = np.zeros(len(cost), np.int64)
     for i in range(len(cost)):
         for _ in range(_OPPONENTS):
             other = draw_integer(rng, 0, len(cost) - 1)

@@ -22,7 +22,7 @@ from bezierplan.planners.parts.cell_paths import (
     step_between,
 )
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
 
@@ -44,19 +44,19 @@ class Settings(NamedTuple):
     ants: Annotated[int, Range(1), About("ants of an iteration")]
     iterations: Annotated[int, Range(1), About("iterations")]
     trail_weight: Annotated[
-        float, Range(0), About("exponent of the trail in the attraction of a step")
+        float, NOT_NEGATIVE, About("exponent of the trail in the attraction of a step")
     ]
     heuristic_weight: Annotated[
         float,
-        Range(0),
+        NOT_NEGATIVE,
         About("exponent of the heuristic, 1 over the distance to the target in cells"),
     ]
-    target_heuristic: Annotated[float, Range(0), About("heuristic of the target itself")]
-    initial_trail: Annotated[float, Range(0), About("trail on every step at first")]
-    evaporation: Annotated[float, Range(0, 1), About("share of a trail lost per iteration")]
+    target_heuristic: Annotated[float, NOT_NEGATIVE, About("heuristic of the target itself")]
+    initial_trail: Annotated[float, NOT_NEGATIVE, About("trail on every step at first")]
+    evaporation: Annotated[float, SHARE, About("share of a trail lost per iteration")]
     deposit: Annotated[
         float,
-        Range(0),
+        NOT_NEGATIVE,
         About("added, divided by a path's length in cells, to each of its steps, both ways"),
     ]
     trail_update: Annotated[
@@ -67,11 +67,11 @@ class Settings(NamedTuple):
         ),
     ]
     exploitation: Annotated[
-        float, Range(0, 1), About("probability q0 of taking the most attractive step")
+        float, SHARE, About("probability q0 of taking the most attractive step")
     ]
     local_evaporation: Annotated[
         float,
-        Range(0, 1),
+        SHARE,
         About("share by which an ant moves the trail of its step back to the initial one"),
     ]
 
@@ -149,9 +149,9 @@ def _run_colony(rng, lattice, heuristic, rules):
     cells = len(lattice.row)
     trail = np.full((cells, 8), rules.initial_trail)
     visits = np.full(cells, -1)
-    paths = np.empty((rules.ants, cells), dtype=np.int64)
-    sizes = np.empty(rules.ants, dtype=np.int64)
-    best, best_size, best_length = np.empty(cells, dtype=np.int64), 0, np.inf
+    paths = np.empty((rules.ants, cells), np.int64)
+    sizes = np.empty(rules.ants, np.int64)
+    best, best_size, best_length = np.empty(cells, np.int64), 0, np.inf
     history = np.empty(rules.iterations)
 
     for iteration in range(rules.iterations):
@@ -204,7 +204,7 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
 
     visits: (cells,) the number of the last ant that visited each cell; so it need not be cleared.
     """
-    steps, attraction = np.empty(8, dtype=np.int64), np.empty(8)
+    steps, attraction = np.empty(8, np.int64), np.empty(8)
     cell = lattice.start
     path[0] = cell
     visits[cell] = ant

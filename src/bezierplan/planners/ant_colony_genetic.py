@@ -14,7 +14,7 @@ import numpy as np
 from bezierplan.planners import About, Plan, Range, ant_colony
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
@@ -29,8 +29,8 @@ class Settings(NamedTuple):
 
     population: Annotated[int, Range(2), About("paths of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
+    crossover_probability: Annotated[float, SHARE, About("of a pair of parents")]
+    mutation_probability: Annotated[float, SHARE, About("of a child")]
     mutation: Annotated[
         Mutation,
         About(
@@ -39,7 +39,7 @@ class Settings(NamedTuple):
         ),
     ]
     longest_join: Annotated[int, Range(2), About("most cells of a reconnected section")]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a child")]
 
 
 check = check_pairs
@@ -108,7 +108,7 @@ def _choose_first_population(
     """Return paths (population, cells) and their sizes: the best one, then the last ants' in
     turn.
     """
-    paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
+    paths = np.empty((population, colony.paths.shape[1]), np.int64)
     sizes = np.full(population, len(colony.best))
     paths[:, : len(colony.best)] = colony.best
     arrived = np.flatnonzero(colony.sizes)

@@ -15,27 +15,32 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.cell_length import sum_of_steps
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
     breed,
+    change_gene,
     check_curve,
     check_pairs,
     copy,
     flip_bit,
     is_same,
-    redraw_gene,
 )
-from bezierplan.planners.parts.penalised import compute_basis
+from bezierplan.planners.parts.penalised import compute_basis, write_curve
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
+from bezierplan.planners.parts.settings import (
+    NOT_NEGATIVE,
+    SHARE,
+    UNITS,
+    convert_to_cells,
+    with_settings,
+)
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples", "safety_term")
 workspaces = ("grid",)
-
-PAPER = "ma2020"
 
 CurveKind = IntEnum("CurveKind", "bezier piecewise_quadratic", start=0)
 Initial = IntEnum("Initial", "uniform sorted feasible", start=0)
@@ -70,7 +75,7 @@ class Settings(NamedTuple):
     """
 
     curve: Annotated[
-        CurveKind, About("one Bézier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")
+        CurveKind, About("one Bézier curve, or a chain of quadratic pieces", "ma2020, eqs. 1, 6")
     ]
     control_points: Annotated[
         int, Range(0, 60), About("free control points, beside start and target")
@@ -89,21 +94,19 @@ class Settings(NamedTuple):
             "also sorted by x + y; or redrawn until the curve is free"
         ),
     ]
-    population: Annotated[
-        int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4")
-    ]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", "ma2020, Section 4")]
     generations: Annotated[
-        int, Range(0), About("generations after the first", PAPER + ", Section 4")
+        int, NOT_NEGATIVE, About("generations after the first", "ma2020, Section 4")
     ]
     crossover_probability: Annotated[
         float,
-        Range(0, 1),
-        About("of a pair of parents", PAPER + ", Section 4"),
+        SHARE,
+        About("of a pair of parents", "ma2020, Section 4"),
     ]
     mutation_probability: Annotated[
         float,
-        Range(0, 1),
-        About("of a chromosome, or (per_gene) of each gene", PAPER + ", Section 4"),
+        SHARE,
+        About("of a chromosome, or (per_gene) of each gene", "ma2020, Section 4"),
     ]
     mutation: Annotated[
         Mutation,
@@ -112,10 +115,10 @@ class Settings(NamedTuple):
             "cell, or a bit of each is flipped"
         ),
     ]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a chromosome")]
     fitness: Annotated[
         Fitness,
-        About("form of the cost, whose reciprocal is the fitness", PAPER + ", eqs. 12 to 14"),
+        About("form of the cost, whose reciprocal is the fitness", "ma2020, eqs. 12 to 14"),
     ]
     fitness_feasible: Annotated[
         FitnessFeasible,
@@ -123,18 +126,18 @@ class Settings(NamedTuple):
             "feasible in the last two forms: free of collisions, or also clear by safety_distance"
         ),
     ]
-    length_weight: Annotated[float, Range(1e-6), About("w1", PAPER + ", eq. 12")]
-    safety_weight: Annotated[float, Range(0), About("w2", PAPER + ", eq. 12")]
+    length_weight: Annotated[float, Range(1e-6), About("w1", "ma2020, eq. 12")]
+    safety_weight: Annotated[float, NOT_NEGATIVE, About("w2", "ma2020, eq. 12")]
     safety_distance: Annotated[
-        float, Range(0), About("distance to keep from obstacles", PAPER + ", eq. 14", UNITS)
+        float, NOT_NEGATIVE, About("distance to keep from obstacles", "ma2020, eq. 14", UNITS)
     ]
     collision_factor: Annotated[
         float,
-        Range(0),
+        NOT_NEGATIVE,
         About("length added for samples in collision, as a multiple of their share"),
     ]
     collision_surcharge: Annotated[
-        float, Range(0), About("added to a path with a collision", unit=UNITS)
+        float, NOT_NEGATIVE, About("added to a path with a collision", unit=UNITS)
     ]
 
 
@@ -198,7 +201,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
     best, history = _search(moves, codes, cells, sampled, rules)
     # The search measures the clearance only if the fitness asks for it, the table has it always.
-    _, bad, clearance = _measure(best, cells, sampled, np.empty((3, settings.samples)), True)
+    _, bad, clearance = _measure(best, cells, sampled, True)
     points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
     return Plan(
         path=Path(curve, points),
@@ -234,18 +237,23 @@ class _Cells(NamedTuple):
 
 
 class _Curve(NamedTuple):
-    """Samples of a curve as a linear map of its control points.
+    """Samples of a curve as a linear map of its control points, and room for one curve.
 
     ends: (2, samples), x and y contributions of start and target to the samples, in cells.
     free: (control points, samples), the weights of the free control points.
     straight: distance from start to target, in cells.
     cell: side of a cell, in units.
+    points, samples, chords: (2 control points,), (2, samples) and (samples,), overwritten by each
+        curve that is measured.
     """
 
     ends: np.ndarray
     free: np.ndarray
     straight: float
     cell: float
+    points: np.ndarray
+    samples: np.ndarray
+    chords: np.ndarray
 
 
 def list_code_centres(rows: int, columns: int) -> np.ndarray:
@@ -268,7 +276,7 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
     Raises ValueError if no cell is free.
     """
     rows, columns = grid.occupied.shape
-    legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
+    legal = np.zeros(1 << (rows * columns - 1).bit_length(), bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
     free = np.flatnonzero(legal)
     if not len(free):
@@ -299,7 +307,13 @@ def _sample_curve(problem: Problem, curve: str, control_points: int, samples: in
     grid = problem.workspace
     straight = math.dist(problem.start, problem.target) / grid.cell
     return _Curve(
-        grid.in_cells(np.array([problem.start, problem.target])).T @ ends, free, straight, grid.cell
+        grid.in_cells(np.array([problem.start, problem.target])).T @ ends,
+        free,
+        straight,
+        grid.cell,
+        np.empty(2 * control_points),
+        np.empty((2, samples)),
+        np.empty(samples),
     )
 
 
@@ -315,10 +329,9 @@ def _search(rng, codes, cells, curve, rules):
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
     parents = np.full_like(codes, -1)
-    draws = np.zeros(population, dtype=np.int64)
+    draws = np.zeros(population, np.int64)
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
-    scratch = np.empty((3, curve.ends.shape[1]))
 
     for generation in range(rules.generations + 1):
         for i in range(population):
@@ -329,7 +342,7 @@ def _search(rng, codes, cells, curve, rules):
             elif generation > 0 and is_same(codes[i], parents[father]):
                 cost[i] = parent_cost[father]
             else:
-                cost[i] = _compute_cost(codes[i], cells, curve, rules, scratch)
+                cost[i] = _compute_cost(codes[i], cells, curve, rules)
             if cost[i] < best_cost:
                 copy(codes[i], best)
                 best_cost = cost[i]
@@ -352,10 +365,9 @@ def _redraw(rng, codes, cells, curve):
     """Redraw each chromosome, in place, until its curve is free, at most `_FEASIBLE_TRIES`
     times.
     """
-    scratch = np.empty((3, curve.ends.shape[1]))
     for i in range(len(codes)):
         for _ in range(_FEASIBLE_TRIES):
-            if _measure(codes[i], cells, curve, scratch, False)[1] == 0:
+            if _measure(codes[i], cells, curve, False)[1] == 0:
                 break
             for gene in range(codes.shape[1]):
                 codes[i, gene] = cells.free[draw_integer(rng, 0, len(cells.free))]
@@ -369,16 +381,13 @@ def _mutate(rng, genes, bits, cells, rules):
             if rng.random() < rules.mutation_probability:
                 flip_bit(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
-        if rules.mutation == Mutation.bit_flip:
-            flip_bit(rng, genes, draw_integer(rng, 0, len(genes)), bits, cells.legal)
-        else:
-            redraw_gene(rng, genes, cells.free)
+        change_gene(rng, genes, bits, cells.free, cells.legal, rules.mutation == Mutation.bit_flip)
 
 
 @allocation_free
-def _compute_cost(genes, cells, curve, rules, scratch):
+def _compute_cost(genes, cells, curve, rules):
     """Return a chromosome's cost, the reciprocal of its fitness (`Settings` lists the forms)."""
-    length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
+    length, bad, clearance = _measure(genes, cells, curve, rules.fitness != Fitness.length)
     priced = length * (
         1.0 + rules.collision_factor * bad / curve.ends.shape[1]
     ) + rules.collision_surcharge * (bad > 0)
@@ -414,34 +423,20 @@ def _compute_safety_term(bad, clearance, safety_distance):
 
 
 @allocation_free
-def _measure(genes, cells, curve, scratch, with_clearance):
+def _measure(genes, cells, curve, with_clearance):
     """Measure the polyline through a curve's samples.
 
     Returns its length in cells, the number of colliding samples, and the least distance of the
     samples to the occupied cells nearby: infinite if there are none, 0 for a path that collides or
     if it is not requested.
-
-    scratch: (3, samples).
     """
-    x, y, chords = scratch[0], scratch[1], scratch[2]
-    samples = len(x)
-    for s in range(samples):
-        x[s], y[s] = curve.ends[0, s], curve.ends[1, s]
-    for k in range(len(genes)):
-        column, row = cells.centres[genes[k], 0], cells.centres[genes[k], 1]
-        for s in range(samples):
-            x[s] += column * curve.free[k, s]
-            y[s] += row * curve.free[k, s]
-    # Square roots and their sum are computed in two loops, so that the first can use vector
-    # instructions.
-    for s in range(samples - 1):
-        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
-        chords[s] = np.sqrt(dx * dx + dy * dy)
-    length = 0.0
-    for s in range(samples - 1):
-        length += chords[s]
+    n, (x, y) = len(genes), curve.samples
+    for k in range(n):
+        curve.points[k], curve.points[n + k] = cells.centres[genes[k]]
+    write_curve(curve.points, curve, curve.samples)
     bad = count_collisions(x, y, cells.occupied)
-    return length, bad, _measure_clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
+    clearance = _measure_clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
+    return sum_of_steps(x, y, curve.chords), bad, clearance
 
 
 @allocation_free

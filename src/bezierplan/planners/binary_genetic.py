@@ -28,7 +28,13 @@ from bezierplan.planners.parts.genetic import (
     is_same,
 )
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
+from bezierplan.planners.parts.settings import (
+    NOT_NEGATIVE,
+    SHARE,
+    UNITS,
+    convert_to_cells,
+    with_settings,
+)
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -36,8 +42,6 @@ extra = ("bad_samples",)
 # A run that reports its last generation can lose the best path.
 keeps_best = False
 workspaces = ("grid",)
-
-PAPER = "song2016"
 
 Curve = IntEnum("Curve", "polyline piecewise_quadratic piecewise_cubic bezier", start=0)
 Spacing = IntEnum("Spacing", "parameter arc_length", start=0)
@@ -51,11 +55,11 @@ Rejection = IntEnum("Rejection", "all consecutive harmless none", start=0)
 class Settings(NamedTuple):
     """Settings of the search (song2016, Sections III and IV)."""
 
-    curve: Annotated[Curve, About("kind of curve", PAPER + ", Section III")]
+    curve: Annotated[Curve, About("kind of curve", "song2016, Section III")]
     genes: Annotated[
         int,
         Range(0, 60),
-        About("free control points, beside start and target", PAPER + ", Section IV"),
+        About("free control points, beside start and target", "song2016, Section IV"),
     ]
     samples: Annotated[
         int, Range(2), About("points of the curve tested and measured, both ends included")
@@ -64,39 +68,39 @@ class Settings(NamedTuple):
         Spacing, About("samples are uniform in the parameter, or (polylines) along the path")
     ]
     population: Annotated[
-        int, Range(2), About("chromosomes of a generation", PAPER + ", Section IV")
+        int, Range(2), About("chromosomes of a generation", "song2016, Section IV")
     ]
     generations: Annotated[
-        int, Range(0), About("generations after the first", PAPER + ", Section IV")
+        int, NOT_NEGATIVE, About("generations after the first", "song2016, Section IV")
     ]
     crossover_probability: Annotated[
-        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section IV")
+        float, SHARE, About("of a pair of parents", "song2016, Section IV")
     ]
     cut: Annotated[Cut, About("the crossover point lies before any bit, or only between genes")]
     mutation_probability: Annotated[
-        float, Range(0, 1), About("of a chromosome, a gene or a bit", PAPER + ", Section IV")
+        float, SHARE, About("of a chromosome, a gene or a bit", "song2016, Section IV")
     ]
     mutation: Annotated[
         Mutation,
         About(
             "a bit of a chromosome is complemented, one of each gene, or each",
-            PAPER + ", Section III-E",
+            "song2016, Section III-E",
         ),
     ]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a chromosome")]
     penalty: Annotated[
-        float, Range(0), About("added for occupied samples", PAPER + ", Section IV", UNITS)
+        float, NOT_NEGATIVE, About("added for occupied samples", "song2016, Section IV", UNITS)
     ]
     penalty_for: Annotated[
         PenaltyFor,
         About(
             "each sample in an occupied cell, once a path with any, or each time that samples "
             "enter an occupied cell",
-            PAPER + ", Sections III-D and IV",
+            "song2016, Sections III-D and IV",
         ),
     ]
     occupied_point_penalty: Annotated[
-        float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)
+        float, NOT_NEGATIVE, About("added for each control point in an occupied cell", unit=UNITS)
     ]
     report: Annotated[
         Report,
@@ -111,7 +115,7 @@ class Settings(NamedTuple):
             "which control points of the final path are rejected because they coincide with "
             "another: all, those next to each other, all if no more samples then lie in occupied "
             "cells, or none",
-            PAPER + ", Remark 3",
+            "song2016, Remark 3",
         ),
     ]
 
@@ -167,7 +171,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         settings = settings._replace(population=1, generations=0)
         cells = np.full((1, settings.genes + 2), ends[0])
     else:
-        cells = np.empty((settings.population, settings.genes + 2), dtype=np.int64)
+        cells = np.empty((settings.population, settings.genes + 2), np.int64)
         cells[:, 1:-1] = starts.integers(
             0, occupied.size, size=(settings.population, settings.genes)
         )
@@ -277,17 +281,14 @@ def _search(rng, cells, occupied, places, curve, rules):
     basis, stretches = curve.basis, curve.stretches
     # The logarithm of a power of 2 may be a rounding error off.
     bits = int(np.log2(occupied.size) + 0.5)
-    lengths = np.empty((population, len(stretches)))
-    # By stretch: how many samples lie in occupied cells, and how often they enter one.
-    bad = np.empty((population, len(stretches)), dtype=np.int64)
-    entries = np.empty_like(bad)
-    parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
-    parent_entries = np.empty_like(entries)
+    # By stretch: its length, how many samples lie in occupied cells, and how often they enter one.
+    found = np.empty((population, len(stretches), 3))
+    parent_found = np.empty_like(found)
     # The first generation inherits nothing.
     parents = np.full_like(cells, -1)
-    draws = np.zeros(population, dtype=np.int64)
+    draws = np.zeros(population, np.int64)
     objective = np.empty(population)
-    best, best_objective, best_bad = cells[0].copy(), np.inf, 0
+    best, best_objective, best_bad = cells[0].copy(), np.inf, 0.0
     history = np.empty(rules.generations + 1)
     # Flat, so that kernels look up a cell by its number.
     by_number, columns, samples = occupied.ravel(), occupied.shape[1], basis.shape[1]
@@ -295,7 +296,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         np.empty(samples),
         np.empty(samples),
         np.empty(samples),
-        np.empty(samples, dtype=np.int32),
+        np.empty(samples, np.int32),
     )
 
     for generation in range(rules.generations + 1):
@@ -303,35 +304,34 @@ def _search(rng, cells, occupied, places, curve, rules):
             # Elitism brings the best of the generation before, so this one is never worse.
             best_objective = np.inf
         for i in range(population):
-            # Both parents of the pair: a crossover gives a child parts of either.
             mother, father = draws[i - i % 2], draws[min(i | 1, population - 1)]
-            length, count, visits = 0.0, 0, 0
+            length = count = visits = 0.0
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1] + 1
-                if is_same(cells[i, first:last], parents[mother, first:last]):
-                    lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
-                    entries[i, k] = parent_entries[mother, k]
-                elif is_same(cells[i, first:last], parents[father, first:last]):
-                    lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
-                    entries[i, k] = parent_entries[father, k]
-                elif curve.by_arc_length:
-                    lengths[i, k], bad[i, k], entries[i, k] = _measure_by_arc_length(
-                        cells[i], occupied, places, samples
-                    )
+                own, measures = cells[i, first:last], found[i, k]
+                # Both parents of the pair: a crossover gives a child parts of either.
+                for parent in (mother, father):
+                    if is_same(own, parents[parent, first:last]):
+                        copy(parent_found[parent, k], measures)
+                        break
                 else:
-                    lengths[i, k], bad[i, k], entries[i, k] = _measure(
-                        cells[i],
-                        by_number,
-                        columns,
-                        places,
-                        basis,
-                        stretches[k],
-                        scratch,
-                        rules.penalty_for == PenaltyFor.per_cell,
+                    measures[0], measures[1], measures[2] = (
+                        _measure_by_arc_length(cells[i], occupied, places, samples)
+                        if curve.by_arc_length
+                        else _measure(
+                            cells[i],
+                            by_number,
+                            columns,
+                            places,
+                            basis,
+                            stretches[k],
+                            scratch,
+                            rules.penalty_for == PenaltyFor.per_cell,
+                        )
                     )
-                length += lengths[i, k]
-                count += bad[i, k]
-                visits += entries[i, k]
+                length += measures[0]
+                count += measures[1]
+                visits += measures[2]
                 objective[i] = length + rules.penalty * _count_penalties(
                     count, visits, rules.penalty_for
                 )
@@ -349,9 +349,7 @@ def _search(rng, cells, occupied, places, curve, rules):
             break
 
         parents, cells = cells, parents
-        parent_lengths, lengths = lengths, parent_lengths
-        parent_bad, bad = bad, parent_bad
-        parent_entries, entries = entries, parent_entries
+        parent_found, found = found, parent_found
         unit = bits if rules.cut == Cut.gene else 1
         draws = breed(rng, parents, objective, cells, 1, rules.crossover_probability, unit, bits)
         for i in range(population):
@@ -370,7 +368,7 @@ def _count_penalties(bad, entries, penalty_for):
         return bad
     if penalty_for == PenaltyFor.per_cell:
         return entries
-    return min(bad, 1)
+    return min(bad, 1.0)
 
 
 @allocation_free

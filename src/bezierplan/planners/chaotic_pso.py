@@ -24,7 +24,13 @@ from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
-from bezierplan.planners.parts.settings import UNITS, fill_settings, with_settings
+from bezierplan.planners.parts.settings import (
+    NOT_NEGATIVE,
+    SHARE,
+    UNITS,
+    fill_settings,
+    with_settings,
+)
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
@@ -39,8 +45,6 @@ extra = (
     "zeta_clipped",
 )
 workspaces = ("circles", "polygons")
-
-PAPER = "tharwat2018"
 
 ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social", start=0)
 RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration", start=0)
@@ -90,13 +94,13 @@ class Settings(NamedTuple):
         About(
             "kind of curve; "
             "a ferguson curve's control points alternate between tangents and points",
-            PAPER + ", eqs. 1, 2",
+            "tharwat2018, eqs. 1, 2",
         ),
     ]
     control_points: Annotated[
         int,
         Range(0, 60),
-        About("free control points, beside start and target", PAPER + ", Section 5.1"),
+        About("free control points, beside start and target", "tharwat2018, Section 5.1"),
     ]
     samples: Annotated[
         int,
@@ -109,7 +113,7 @@ class Settings(NamedTuple):
         Tested,
         About(
             "which points must keep out of obstacles: the samples, or the free control points",
-            PAPER + ", eqs. 20 to 22",
+            "tharwat2018, eqs. 20 to 22",
         ),
     ]
     penalty: Annotated[
@@ -117,29 +121,33 @@ class Settings(NamedTuple):
         About(
             "fitness of length L and violation V: "
             "L (1 + beta V), L + beta V, or (death) beta if V > 0",
-            PAPER + ", eq. 22, which leaves it open",
+            "tharwat2018, eq. 22, which leaves it open",
         ),
     ]
-    beta: Annotated[float, Range(0), About("weight of the violation, or fitness of a dead path")]
-    d_min: Annotated[
-        float, Range(0), About("added to every radius", PAPER + ", eq. 21", unit=UNITS)
+    beta: Annotated[
+        float, NOT_NEGATIVE, About("weight of the violation, or fitness of a dead path")
     ]
-    particles: Annotated[int, Range(1), About("particles of the swarm", PAPER + ", Table 2")]
-    iterations: Annotated[int, Range(0), About("most iterations", PAPER + ", Table 2")]
+    d_min: Annotated[
+        float, NOT_NEGATIVE, About("added to every radius", "tharwat2018, eq. 21", unit=UNITS)
+    ]
+    particles: Annotated[int, Range(1), About("particles of the swarm", "tharwat2018, Table 2")]
+    iterations: Annotated[int, NOT_NEGATIVE, About("most iterations", "tharwat2018, Table 2")]
     stall_limit: Annotated[
         int,
-        Range(0),
+        NOT_NEGATIVE,
         About(
             "iterations without improvement that end the search, 0 for none",
-            PAPER + ", Section 4.2.1",
+            "tharwat2018, Section 4.2.1",
         ),
     ]
-    c1: Annotated[float, Range(0), About("C1, the cognition learning factor", PAPER + ", Table 2")]
-    c2: Annotated[float, Range(0), About("C2, the social learning factor", PAPER + ", Table 2")]
-    inertia: Annotated[float, Range(0), About("w of the first iteration")]
-    inertia_damping: Annotated[
-        float, Range(0, 1), About("factor of w from one iteration to the next")
+    c1: Annotated[
+        float, NOT_NEGATIVE, About("C1, the cognition learning factor", "tharwat2018, Table 2")
     ]
+    c2: Annotated[
+        float, NOT_NEGATIVE, About("C2, the social learning factor", "tharwat2018, Table 2")
+    ]
+    inertia: Annotated[float, NOT_NEGATIVE, About("w of the first iteration")]
+    inertia_damping: Annotated[float, SHARE, About("factor of w from one iteration to the next")]
     velocity_limit: Annotated[
         float,
         Range(0, math.inf),
@@ -155,28 +163,28 @@ class Settings(NamedTuple):
     random_numbers: Annotated[RandomNumbers, About("what gets its own r1 and r2")]
     chaotic_term: Annotated[
         ChaoticTerm,
-        About("term whose random number the chaotic sequence replaces", PAPER + ", eqs. 17, 18"),
+        About("term whose random number the chaotic sequence replaces", "tharwat2018, eqs. 17, 18"),
     ]
     chaotic_map: Annotated[
-        chaotic_maps.Map, About("map of the chaotic sequence", PAPER + ", eqs. 9 to 16")
+        chaotic_maps.Map, About("map of the chaotic sequence", "tharwat2018, eqs. 9 to 16")
     ]
     chaotic_start_rule: Annotated[
         StartRule,
         About(
             "how the chaotic sequence starts: at random, redrawn while it dies (random) or not "
             "(uniform), or fixed",
-            PAPER + ", Figure 3",
+            "tharwat2018, Figure 3",
         ),
     ]
     chaotic_start: Annotated[
         float,
-        Range(0, 1),
+        SHARE,
         About("first number under the rule fixed; of the map constant every number"),
     ]
     zeta_for: Annotated[
-        ZetaFor, About("what gets its own number of the sequence", PAPER + ", eqs. 17, 18")
+        ZetaFor, About("what gets its own number of the sequence", "tharwat2018, eqs. 17, 18")
     ]
-    singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", PAPER + ", eq. 10")]
+    singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", "tharwat2018, eq. 10")]
 
 
 def check(settings: dict) -> None:
@@ -377,10 +385,10 @@ def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
         g_fitness[t] = g_fitness[before]
         for i in range(particles):
             penalised.write_curve(x[i], objective, curve)
-            if rules.tested == Tested.samples:
-                violation, colliding = penalised.measure_violation(curve, objective, scratch)
-            else:
-                violation, colliding = _measure_violation_of_points(x[i], objective, scratch)
+            tested = curve
+            if rules.tested == Tested.control_points:
+                tested = x[i].reshape((2, dimensions // 2))
+            violation, colliding = penalised.measure_violation(tested, objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             # Most paths are too long to be a best one, which a few chords tell.
@@ -420,14 +428,6 @@ def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
         colliding_samples,
         best_colliding_samples,
         best_infeasible,
-    )
-
-
-@compile_kernel
-def _measure_violation_of_points(particle, objective, scratch):
-    """Return `penalised.measure_violation` of a particle's control points, not of its samples."""
-    return penalised.measure_violation(
-        particle.reshape((2, len(particle) // 2)), objective, scratch
     )
 
 

@@ -21,13 +21,11 @@ from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.genetic import check_curve, copy
 from bezierplan.planners.parts.penalised import FEASIBLE
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
+from bezierplan.planners.parts.settings import NOT_NEGATIVE, UNITS, convert_to_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("circles", "polygons", "grid")
-
-SOURCE = "Storn and Price 1997"
 
 Curve = IntEnum("Curve", "bezier piecewise_quadratic piecewise_cubic", start=0)
 Collision = IntEnum("Collision", "samples chords", start=0)
@@ -36,11 +34,19 @@ Collision = IntEnum("Collision", "samples chords", start=0)
 class Settings(NamedTuple):
     """Settings of the search, and of the objective that it shares with a paper's method."""
 
-    population: Annotated[int, Range(4), About("NP, vectors of a generation", SOURCE)]
-    generations: Annotated[int, Range(0), About("generations after the first", SOURCE)]
-    weight: Annotated[float, Range(0, 2), About("F, factor of the difference", SOURCE)]
+    population: Annotated[
+        int, Range(4), About("NP, vectors of a generation", "Storn and Price 1997")
+    ]
+    generations: Annotated[
+        int, NOT_NEGATIVE, About("generations after the first", "Storn and Price 1997")
+    ]
+    weight: Annotated[
+        float, Range(0, 2), About("F, factor of the difference", "Storn and Price 1997")
+    ]
     crossover: Annotated[
-        float, Range(0, 1), About("CR, probability of a mutant's coordinate", SOURCE)
+        float,
+        Range(0, 1),
+        About("CR, probability of a mutant's coordinate", "Storn and Price 1997"),
     ]
     curve: Annotated[Curve, About("kind of curve")]
     control_points: Annotated[
@@ -60,8 +66,10 @@ class Settings(NamedTuple):
             "lie in one or end a chord through one; elsewhere the depth of tharwat2018, eq. 21"
         ),
     ]
-    factor: Annotated[float, Range(0), About("length added for the violation, as a multiple of it")]
-    collision_penalty: Annotated[float, Range(0), About("added for the violation", unit=UNITS)]
+    factor: Annotated[
+        float, NOT_NEGATIVE, About("length added for the violation, as a multiple of it")
+    ]
+    collision_penalty: Annotated[float, NOT_NEGATIVE, About("added for the violation", unit=UNITS)]
     surcharge: Annotated[
         float,
         Range(0, math.inf),
@@ -109,12 +117,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     objective = penalised.Objective(
         ends=ends.T @ of_ends,
         free=of_free,
-        balls=np.empty((0, 3)) if cells else penalised.round_obstacles(world, 0.0),
+        balls=penalised.round_obstacles(world, 0.0),
         polygons=penalised.grow_polygons(world, 0.0),
         penalty=int(penalised.Penalty.multiply),
         beta=rules.factor,
     )
-    occupied = np.array(world.occupied) if cells else np.empty((0, 0), dtype=bool)
+    occupied = np.array(world.occupied) if cells else np.empty((0, 0), bool)
 
     # Moves have a generator of their own, so they do not depend on how much the first vectors drew.
     starts, moves = rng.spawn(2)

@@ -4,10 +4,6 @@ ma2020's competing methods (Section 4.1).
 Only the title of its reference 31 is known. Fish forage from cell to cell and occasionally follow
 one that is closer to the target; the paths of those that arrive form the first population of a
 genetic algorithm, which mutates a path by foraging a section of it again.
-
-Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow
-one that is closer to the target; the paths of those that arrive form the first population of a
-genetic algorithm, which mutates a path by foraging a section of it again.
 """
 
 from typing import Annotated, NamedTuple
@@ -18,7 +14,7 @@ from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
 from bezierplan.workspaces.lattice import Corners
 from bezierplan.workspaces.problem import Problem
 
@@ -43,16 +39,16 @@ class Settings(NamedTuple):
     fish: Annotated[int, Range(1), About("fish of a swarm")]
     tries: Annotated[
         int,
-        Range(0),
+        NOT_NEGATIVE,
         About("random neighbours examined for one closer to the target before any is taken"),
     ]
     population: Annotated[int, Range(2), About("paths of a generation")]
-    generations: Annotated[int, Range(0), About("generations after the first")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
+    generations: Annotated[int, NOT_NEGATIVE, About("generations after the first")]
+    crossover_probability: Annotated[float, SHARE, About("of a pair of parents")]
     mutation_probability: Annotated[
-        float, Range(0, 1), About("of a child, a section of whose path is foraged again")
+        float, SHARE, About("of a child, a section of whose path is foraged again")
     ]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a child")]
 
 
 check = check_pairs
@@ -98,7 +94,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         paths, sizes, releases = np.array([[places.start]]), np.array([1]), 1
     else:
         paths, sizes, releases = _collect_first_paths(first, places, settings)
-    best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
+    best, history = np.empty(0, np.int64), np.array([np.inf])
     if len(sizes) > 0:
         rules = cell_paths.Rules(
             settings.crossover_probability,
@@ -127,12 +123,12 @@ def _collect_first_paths(rng, lattice, swarm):
     (n,), and the number of releases.
     """
     most = swarm.population
-    arrivals = np.empty((most, _LONGEST_PATH), dtype=np.int64)
-    arrival_sizes = np.empty(most, dtype=np.int64)
-    paths = np.empty((swarm.fish, _LONGEST_PATH), dtype=np.int64)
-    sizes = np.empty(swarm.fish, dtype=np.int64)
-    visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
-    cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
+    arrivals = np.empty((most, _LONGEST_PATH), np.int64)
+    arrival_sizes = np.empty(most, np.int64)
+    paths = np.empty((swarm.fish, _LONGEST_PATH), np.int64)
+    sizes = np.empty(swarm.fish, np.int64)
+    visited = np.empty((swarm.fish, len(lattice.row)), np.int64)
+    cells, states = np.empty(swarm.fish, np.int64), np.empty(swarm.fish, np.int64)
     count = releases = 0
     while count < most and releases < _RELEASES:
         releases += 1

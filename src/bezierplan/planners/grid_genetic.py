@@ -18,11 +18,12 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.cell_paths import put
+from bezierplan.planners.parts.cell_paths import cut_loops, draw_common_cell, put
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.planners.parts.sorting import ascending
+from bezierplan.workspaces.lattice import drop_straight_vertices
 from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
@@ -38,8 +39,8 @@ class Settings(NamedTuple):
 
     population: Annotated[int, Range(2), About("paths of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
+    crossover_probability: Annotated[float, SHARE, About("of a pair of parents")]
+    mutation_probability: Annotated[float, SHARE, About("of a child")]
     diagonal_cost: Annotated[
         float,
         Range(1, 2),
@@ -47,7 +48,7 @@ class Settings(NamedTuple):
     ]
     random_step: Annotated[
         float,
-        Range(0, 1),
+        SHARE,
         About("probability that a step of a walk is random where some cell is nearer to the goal"),
     ]
 
@@ -78,7 +79,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     grid = problem.workspace
     walls = np.pad(grid.occupied, 1, constant_values=True)
-    ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    ends = grid.in_cells(np.array([problem.start, problem.target], float))
     # An end on the upper or right border lies in the last cell; the frame shifts all by one.
     (start_column, target_column), (start_row, target_row) = (
         np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
@@ -92,9 +93,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if len(cells) == 0:
         return Plan.of_one(None, np.inf, "no way")
     row, column = np.divmod(cells, walls.shape[1])
-    centres = grid.in_units(np.column_stack([column, row]) - 0.5)
+    centres = grid.in_units(drop_straight_vertices(np.column_stack([column, row]) - 0.5))
     return Plan(
-        path=Path("polyline", _join_through_centres(problem, centres[_is_turn(column, row)])),
+        path=Path("polyline", _join_through_centres(problem, centres)),
         objective=history[-1],
         claimed_feasible=True,
         evaluations=settings.population * len(history),
@@ -102,14 +103,6 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         stop="generations",
         extra={},
     )
-
-
-def _is_turn(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Tell which cells (n,) of a path are its first, its last, or change the direction."""
-    steps = np.column_stack([np.diff(column), np.diff(row)])
-    inner = (steps[1:] != steps[:-1]).any(axis=1)
-    # A path of one cell has one entry, its first and its last.
-    return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
 def _join_through_centres(problem: Problem, centres: np.ndarray) -> np.ndarray:
@@ -133,14 +126,14 @@ class _Walker(NamedTuple):
     columns: number of the framed grid's columns.
     visits: (cells,) the number of the last walk that visited a cell, or of all walks for cell 0,
         which is a wall.
-    last_visit: (cells,) scratch of `_cut_loops`.
+    marks: (cells,) scratch of operators on paths, all 0 between them.
     """
 
     walls: np.ndarray
     columns: int
     random_step: float
     visits: np.ndarray
-    last_visit: np.ndarray
+    marks: np.ndarray
 
 
 @compile_kernel
@@ -150,16 +143,15 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
     """
     size, population = len(walls), rules.population
     walker = _Walker(
-        walls, columns, rules.random_step, np.zeros(size, np.int64), np.empty(size, np.int64)
+        walls, columns, rules.random_step, np.zeros(size, np.int64), np.zeros(size, np.int64)
     )
     # A path or a walk visits a cell once; before its loops are removed, a child consists of at most
     # two paths and a walk.
-    walk = np.empty(3 * size, dtype=np.int64)
-    index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
+    walk = np.empty(3 * size, np.int64)
 
     paths, costs = _draw_first_walks(walks_rng, walker, start, target, rules, walk)
     if len(paths) == 0:
-        return np.empty(0, dtype=np.int64), np.full(1, np.inf)
+        return np.empty(0, np.int64), np.full(1, np.inf)
     paths, costs = _select_best(paths, costs, population)
     history = np.empty(rules.generations + 1)
     history[0] = costs[0]
@@ -169,12 +161,14 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
         drawn = draw_parents(moves_rng, 1.0 / costs[:population], 2 * population)
         for i in range(population):
             head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
-            count = 0
+            k = m = 0
             if moves_rng.random() < rules.crossover_probability:
-                count = _join(moves_rng, head, tail, index, common, walk)
-            if count == 0:
-                count = put(head, walk, 0)
-            count = _cut_loops(walk, count, walker.last_visit)
+                k, m = draw_common_cell(moves_rng, tail, head, walker.marks)
+            if k == 0:
+                # Without a shared cell the child is the first parent.
+                k, m = len(tail), len(head)
+            count = put(tail[k:], walk, put(head[:m], walk, 0))
+            count = cut_loops(walk[:count], walker.marks)
             if moves_rng.random() < rules.mutation_probability and count > 1:
                 count = _walk_anew(moves_rng, walker, walk, count)
             paths.append(walk[:count].copy())
@@ -219,7 +213,7 @@ def _draw_first_walks(rng, walker, start, target, rules, walk):
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
         if count > 0:
-            count = _cut_loops(walk, count, walker.last_visit)
+            count = cut_loops(walk[:count], walker.marks)
             costs[len(paths)] = _measure_path(walk, count, walker.columns, rules.diagonal_cost)
             paths.append(walk[:count].copy())
         elif len(paths) == 0:
@@ -262,48 +256,6 @@ def _extend(rng, walker, walk, count, goal):
 
 
 @allocation_free
-def _cut_loops(walk, count, last_visit):
-    """Remove the loops of a walk, in place, and return the remaining number of cells.
-
-    After each cell it continues as after its last visit there.
-    """
-    for k in range(count):
-        last_visit[walk[k]] = k
-    kept = 0
-    k = 0
-    while k < count:
-        walk[kept] = walk[k]
-        k = last_visit[walk[k]] + 1
-        kept += 1
-    return kept
-
-
-@allocation_free
-def _join(rng, head, tail, index, common, walk):
-    """Write the head of one path and the tail of another, joined at a random inner cell of both.
-
-    Returns the length, or 0 if there is no such cell.
-
-    index: (cells,) scratch, all -1 before and after.
-    """
-    for k in range(1, len(head) - 1):
-        index[head[k]] = k
-    shared = 0
-    for k in range(1, len(tail) - 1):
-        if index[tail[k]] >= 0:
-            common[shared] = k
-            shared += 1
-    count = 0
-    if shared > 0:
-        cut = common[draw_integer(rng, 0, shared)]
-        count = put(head[: index[tail[cut]]], walk, 0)
-        count = put(tail[cut:], walk, count)
-    for k in range(1, len(head) - 1):
-        index[head[k]] = -1
-    return count
-
-
-@allocation_free
 def _walk_anew(rng, walker, path, count):
     """Replace the section between two random cells of a path by a new walk, in place.
 
@@ -319,7 +271,7 @@ def _walk_anew(rng, walker, path, count):
     path[count] = path[first]
     end = _extend(rng, walker, path, count + 1, path[last])
     end = put(path[last + 1 : count], path, end)
-    return _cut_loops(path, put(path[count + 1 : end], path, first + 1), walker.last_visit)
+    return cut_loops(path[: put(path[count + 1 : end], path, first + 1)], walker.marks)
 
 
 @allocation_free

@@ -6,12 +6,6 @@ midpoints. Roulette, crossover between genes and elitism are those of BCA. Besid
 things differ: a chromosome whose cells cannot be joined has a fixed length instead of a surcharge
 for its collisions, and mutation draws another cell, unless it flips a bit as in BCA. With `rows` a
 chromosome is itself a path, initially one through a random free cell of each row.
-
-With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
-midpoints. Roulette, crossover between genes and elitism are those of BCA. What differs, beside the
-path: a chromosome whose cells cannot be joined has a fixed length instead of a surcharge for its
-collisions, and mutation draws another cell, unless it flips a bit as in BCA. With `rows` a
-chromosome is itself a path, initially one through a random free cell of each row.
 """
 
 import itertools
@@ -20,17 +14,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.kernels import compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import (
     breed,
+    change_gene,
     check_pairs,
-    flip_bit,
-    redraw_gene,
 )
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
 
@@ -65,10 +58,10 @@ class Settings(NamedTuple):
     population: Annotated[int, Range(2), About("chromosomes of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
     crossover_probability: Annotated[
-        float, Range(0, 1), About("of a pair of parents, cut between two genes or at a shared cell")
+        float, SHARE, About("of a pair of parents, cut between two genes or at a shared cell")
     ]
     mutation_probability: Annotated[
-        float, Range(0, 1), About("of a chromosome, in one gene or (rows) one section")
+        float, SHARE, About("of a chromosome, in one gene or (rows) one section")
     ]
     mutation: Annotated[
         Mutation,
@@ -77,7 +70,7 @@ class Settings(NamedTuple):
             "it stays a free cell"
         ),
     ]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a chromosome")]
 
 
 check = check_pairs
@@ -116,7 +109,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     population, genes = settings.population, settings.genes
     if settings.coding == Coding.via_cells:
         free = np.flatnonzero(~places.occupied)
-        cells = np.empty((population, genes + 2), dtype=np.int64)
+        cells = np.empty((population, genes + 2), np.int64)
         cells[:, 0], cells[:, -1] = places.start, places.target
         cells[:, 1:-1] = free[starts.integers(0, len(free), size=(population, genes))]
         if settings.initial == Initial.sorted:
@@ -126,7 +119,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         best, history = _search(moves, places, free, cells, settings)
     else:
         paths, sizes = _draw_first_paths(starts, places, population, settings.longest_join)
-        best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
+        best, history = np.empty(0, np.int64), np.array([np.inf])
         if sizes.all():
             rules = cell_paths.Rules(
                 settings.crossover_probability,
@@ -155,11 +148,11 @@ def _search(rng, lattice, free, cells, rules):
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
     # A flipped bit may give a number that is no cell, so there is an entry for every number.
-    legal = np.zeros(1 << bits, dtype=np.bool_)
+    legal = np.zeros(1 << bits, np.bool_)
     legal[free] = True
     parents = np.empty_like(cells)
-    path = np.empty(rules.longest_join, dtype=np.int64)
-    marks = np.zeros(len(lattice.row), dtype=np.int64)
+    path = np.empty(rules.longest_join, np.int64)
+    marks = np.zeros(len(lattice.row), np.int64)
     lengths = np.empty(population)
     best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
     history = np.empty(rules.generations + 1)
@@ -180,22 +173,11 @@ def _search(rng, lattice, free, cells, rules):
         breed(rng, parents, lengths, cells, 1, rules.crossover_probability, bits, bits)
         for i in range(population):
             if genes and rng.random() < rules.mutation_probability:
-                _mutate(rng, cells[i, 1:-1], bits, free, legal, rules.mutation)
+                flips = rules.mutation == Mutation.bit_flip
+                change_gene(rng, cells[i, 1:-1], bits, free, legal, flips)
         if rules.elitism:
             cell_paths.put(best, cells[0], 0)
     return best_path, history
-
-
-@allocation_free
-def _mutate(rng, genes, bits, free, legal, mutation):
-    """Change a random gene of a chromosome in place.
-
-    legal: bool (2**bits,), whether a number is that of a free cell.
-    """
-    if mutation == Mutation.bit_flip:
-        flip_bit(rng, genes, draw_integer(rng, 0, len(genes)), bits, legal)
-    else:
-        redraw_gene(rng, genes, free)
 
 
 def _draw_first_paths(
@@ -212,13 +194,11 @@ def _draw_first_paths(
         np.flatnonzero((places.row == row) & ~places.occupied)
         for row in range(first + step, last, step)
     ]
-    paths = np.zeros((population, longest), dtype=np.int64)
-    sizes = np.zeros(population, dtype=np.int64)
+    paths = np.zeros((population, longest), np.int64)
+    sizes = np.zeros(population, np.int64)
     if all(map(len, rows)):
         ends = np.cumsum([0, *map(len, rows)])
-        _join_rows(
-            rng, places, np.array([*itertools.chain(*rows)], dtype=np.int64), ends, paths, sizes
-        )
+        _join_rows(rng, places, np.array([*itertools.chain(*rows)], np.int64), ends, paths, sizes)
     return paths, sizes
 
 
@@ -229,8 +209,8 @@ def _join_rows(rng, lattice, free, ends, paths, sizes):
     free: (n,) the free cells, row by row. ends: (rows + 1,) where each row begins and the last
     ends.
     """
-    marks = np.zeros(len(lattice.row), dtype=np.int64)
-    cells = np.empty(len(ends) + 1, dtype=np.int64)
+    marks = np.zeros(len(lattice.row), np.int64)
+    cells = np.empty(len(ends) + 1, np.int64)
     cells[0], cells[-1] = lattice.start, lattice.target
     for i in range(len(paths)):
         for _ in range(_MOST_DRAWS):

@@ -19,7 +19,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
+from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import (
@@ -32,7 +32,7 @@ from bezierplan.planners.parts.gene_curves import (
 from bezierplan.planners.parts.gene_lattice import Field, build_field, build_polygon, find_genes_at
 from bezierplan.planners.parts.genetic import check_pairs, copy, is_same
 from bezierplan.planners.parts.random_integers import draw_integer
-from bezierplan.planners.parts.settings import with_settings
+from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
@@ -45,8 +45,6 @@ extra = (
     "valid_share",
 )
 workspaces = ("grid",)
-
-PAPER = "elhoseny2017"
 
 # Capacity of a list of genes: a crossover of two chromosomes yields at most twice as many.
 _ROOM = 2 * MOST_POINTS + 1
@@ -66,16 +64,16 @@ class Settings(NamedTuple):
     """Settings of the search (elhoseny2017, Sections 3 and 4)."""
 
     population: Annotated[
-        int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4.2.2")
+        int, Range(2), About("chromosomes of a generation", "elhoseny2017, Section 4.2.2")
     ]
-    iterations: Annotated[int, Range(1), About("iterations", PAPER + ", Section 4.2.2")]
+    iterations: Annotated[int, Range(1), About("iterations", "elhoseny2017, Section 4.2.2")]
     crossover_probability: Annotated[
-        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4.2")
+        float, SHARE, About("of a pair of parents", "elhoseny2017, Section 4.2")
     ]
     mutation_rate: Annotated[
         float,
-        Range(0, 1),
-        About("probability that a gene changes", PAPER + ", Section 4.2"),
+        SHARE,
+        About("probability that a gene changes", "elhoseny2017, Section 4.2"),
     ]
     diversity: Annotated[
         Diversity,
@@ -83,18 +81,20 @@ class Settings(NamedTuple):
             "none; more offspring while the mean Q of the pool exceeds eta; only children whose "
             "mean Q is at most 1 - eta (relaxing); "
             "or none equal to another chromosome (unique)",
-            PAPER + ", Section 3.3, Algorithm 2",
+            "elhoseny2017, Section 3.3, Algorithm 2",
         ),
     ]
     eta: Annotated[
-        float, Range(-1, 1), About("limit of the Q statistic", PAPER + ", Section 4.2.2")
+        float, Range(-1, 1), About("limit of the Q statistic", "elhoseny2017, Section 4.2.2")
     ]
     eta_decay: Annotated[
         float,
-        Range(0, 1),
-        About("factor of eta from one iteration to the next", PAPER + ", Section 3.3"),
+        SHARE,
+        About("factor of eta from one iteration to the next", "elhoseny2017, Section 3.3"),
     ]
-    most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
+    most_batches: Annotated[
+        int, NOT_NEGATIVE, About("most extra batches of offspring in an iteration")
+    ]
     gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
     point_order: Annotated[
         PointOrder,
@@ -111,18 +111,18 @@ class Settings(NamedTuple):
     ]
     first_draws: Annotated[int, Range(1), About("most draws for the first population")]
     replacements: Annotated[
-        int, Range(0), About("draws for an invalid child", PAPER + ", Section 3.2.2")
+        int, NOT_NEGATIVE, About("draws for an invalid child", "elhoseny2017, Section 3.2.2")
     ]
     least_distance: Annotated[
         float,
-        Range(0),
-        About("least distance of two control points", PAPER + ", Figure 4", unit="cells"),
+        NOT_NEGATIVE,
+        About("least distance of two control points", "elhoseny2017, Figure 4", unit="cells"),
     ]
     curve: Annotated[
         CurveKind,
         About(
             "one Bézier curve, or a chain of cubic ones that meet with equal curvature",
-            PAPER + ", eq. 2 or Section 2.1",
+            "elhoseny2017, eq. 2 or Section 2.1",
         ),
     ]
 
@@ -199,13 +199,13 @@ def plan(
     elhoseny2017, Algorithms 1 and 2, Sections 3.2 and 3.3.
     """
     grid = problem.workspace
-    ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    ends = grid.in_cells(np.array([problem.start, problem.target], float))
     if problem.start == problem.target:
         nothing = dict.fromkeys(extra, math.nan) | dict.fromkeys(extra[:1], 0.0)
         nothing |= dict.fromkeys(("loops", "endless_loops", "extra_batches"), 0)
         return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
-    ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
+    ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], float), 0.0))
     field = build_field(
         grid,
         ends,
@@ -268,14 +268,19 @@ def search(
     # A pair of parents has two children, and each of them a mutated twin.
     children = 4 * (size // 2)
     places = size + (1 + rules.most_batches * loops_on) * children
-    pool, kinds = (
-        gene_lists.prepare_pool(places, _ROOM),
-        gene_lists.prepare_kinds(places, len(field.points)),
+    pool, child = gene_lists.prepare_pool(places, _ROOM), np.empty(_ROOM, np.int64)
+    kinds = gene_lists.Kinds(
+        np.empty(places, np.int64),
+        np.empty(places),
+        np.empty((places, places)),
+        np.zeros(len(field.points), np.int64),
     )
-    child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.prepare_memory(_ROOM)
+    memory = gene_lists.prepare_pool(gene_lists.REMEMBERED, _ROOM)
+    # No chromosome has so few genes.
+    memory.count[:] = -1
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations + 1)
-    best, best_cost = np.empty(0, dtype=np.int64), np.inf
+    best, best_cost = np.empty(0, np.int64), np.inf
     loops = endless = batches = births = losses = 0
 
     most, evaluations = _fill_population(rng, start_genes, child, pool, field, rules, scratch)
@@ -390,7 +395,13 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
                         count = _draw_chromosome(rng, child, field.choices, most)
-                    cost = _validate_new(child[:count], memory, field, rules, limit, scratch)
+                    # Most children have been there before, once the population is alike; their
+                    # cost holds, for limits never rise.
+                    place, known = gene_lists.find_entry(child[:count], memory)
+                    if not known:
+                        cost = validate(child[:count], field, rules, limit, scratch)
+                        gene_lists.put(child, count, cost, memory, place)
+                    cost = memory.cost[place]
                     tries += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
@@ -404,19 +415,6 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
                     gene_lists.put(child, count, cost, pool, fill)
                     fill += 1
     return fill, tries, invalid
-
-
-@compile_inline
-def _validate_new(ones, memory, field, rules, limit, scratch):
-    """Return `validate` of a chromosome, without the work if it has been there before.
-
-    Most children have, once the population is alike; limits never rise.
-    """
-    place, known = gene_lists.find_entry(ones, memory)
-    if not known:
-        cost = validate(ones, field, rules, limit, scratch)
-        gene_lists.put(ones, len(ones), cost, memory, place)
-    return memory.cost[place]
 
 
 @allocation_free

@@ -22,9 +22,14 @@ from bezierplan.planners.parts.node_mutation import (
     mutate,
 )
 from bezierplan.planners.parts.random_integers import draw_below
-from bezierplan.planners.parts.settings import UNITS, convert_to_cells, with_settings
+from bezierplan.planners.parts.settings import (
+    NOT_NEGATIVE,
+    SHARE,
+    UNITS,
+    convert_to_cells,
+    with_settings,
+)
 from bezierplan.planners.parts.sorting import ascending
-from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import (
     MOST_NEIGHBOURS,
     Ground,
@@ -51,8 +56,6 @@ workspaces = ("grid",)
 exact = True
 keeps_best = False
 
-PAPER = "meledje"
-
 Initial = IntEnum("Initial", "feasible rejection unrestricted", start=0)
 Selection = IntEnum("Selection", "linear_rank best_half roulette", start=0)
 Cut = IntEnum("Cut", "same independent", start=0)
@@ -70,16 +73,16 @@ _IMPROVEMENT = 1e-9
 class Settings(NamedTuple):
     """Settings of the search (meledje, Sections 2 to 4)."""
 
-    mutation: Annotated[Mutation, About("mutation operator", PAPER + ", Section 3")]
-    population: Annotated[int, Range(2), About("paths of a generation", PAPER + ", Section 4")]
-    generations: Annotated[int, Range(0), About("most generations after the first")]
+    mutation: Annotated[Mutation, About("mutation operator", "meledje, Section 3")]
+    population: Annotated[int, Range(2), About("paths of a generation", "meledje, Section 4")]
+    generations: Annotated[int, NOT_NEGATIVE, About("most generations after the first")]
     stall: Annotated[int, Range(1), About("generations without improvement that end the search")]
     initial: Annotated[
         Initial,
         About(
             "first paths: walks from cell to visible cell, random paths of which feasible ones "
             "are kept (slow on maps of thousands of cells), or any",
-            PAPER + ", Section 2.3",
+            "meledje, Section 2.3",
         ),
     ]
     most_nodes: Annotated[int, Range(1), About("most inner nodes of a first path")]
@@ -88,11 +91,11 @@ class Settings(NamedTuple):
         About("how parents are drawn; roulette in proportion to the reciprocal of the objective"),
     ]
     crossover_probability: Annotated[
-        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4")
+        float, SHARE, About("of a pair of parents", "meledje, Section 4")
     ]
     cut: Annotated[Cut, About("parents are cut after the same number of nodes, or independently")]
     mutation_probability: Annotated[
-        float, Range(0, 1), About("of a path, or of each inner node", PAPER + ", Section 4")
+        float, SHARE, About("of a path, or of each inner node", "meledje, Section 4")
     ]
     mutation_for: Annotated[
         MutationFor, About("what mutates with that probability: a path, or each inner node")
@@ -122,22 +125,22 @@ class Settings(NamedTuple):
         bool,
         About(
             "whether ref12 and proposed keep a node better than all its neighbours",
-            PAPER + ", Table 1, step 4",
+            "meledje, Table 1, step 4",
         ),
     ]
     random_node: Annotated[RandomNode, About("cells that `random` draws from")]
     penalty: Annotated[
-        float, Range(0), About("added for each occupied cell that an edge meets", unit=UNITS)
+        float, NOT_NEGATIVE, About("added for each occupied cell that an edge meets", unit=UNITS)
     ]
-    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a path")]
+    elitism: Annotated[int, SHARE, About("how many of the best so far replace a path")]
     result: Annotated[Result, About("best path of the last generation, or of the run")]
     optimal_within: Annotated[
-        float, Range(0), About("share of the optimum by which an optimal path may exceed it")
+        float, NOT_NEGATIVE, About("share of the optimum by which an optimal path may exceed it")
     ]
     friction: Annotated[
         float,
         Range(1e-6),
-        About("climbs are divided by it", PAPER + ", Section 2.1, without a number"),
+        About("climbs are divided by it", "meledje, Section 2.1, without a number"),
     ]
     corners: Annotated[
         Corners, About("whether an edge through a corner of occupied cells meets them (closed)")
@@ -204,7 +207,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     friction, closed = settings.friction, settings.corners == Corners.closed
     ground = build_ground(grid, friction, closed)
-    start, target = (_find_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
+    start, target = (_find_cell_at(problem, end) for end in ("start", "target"))
     optimum = find_least_energy(grid, friction, closed, start, target)
     # Moves have a generator of their own: they do not depend on how many draws the first paths
     # took.
@@ -263,7 +266,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 _NOTHING = _Outcome(
-    np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0
+    np.empty(0, np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0
 )
 
 
@@ -278,14 +281,15 @@ def _list_inner_cells(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 def serves(problem: Problem) -> None:
     """Raise ValueError, naming the end, unless start and target are centres of cells."""
     for end in ("start", "target"):
-        _find_cell_at(problem.workspace, end, getattr(problem, end))
+        _find_cell_at(problem, end)
 
 
-def _find_cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
-    """Return the number of the cell whose centre is a point.
+def _find_cell_at(problem: Problem, end: str) -> int:
+    """Return the number of the cell whose centre is the start or the target.
 
     Raises ValueError, naming the end, for any other point.
     """
+    grid, point = problem.workspace, getattr(problem, end)
     row, column = grid.cell_of(*point)
     number = int(row * grid.occupied.shape[1] + column)
     if point != grid.centre(number):
@@ -308,8 +312,8 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
     alleles: cells from which random mutation draws.
     """
     population = rules.population
-    paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
-    lengths = np.empty(population, dtype=np.int64)
+    paths = np.empty((population, rules.most_nodes + 2), np.int64)
+    lengths = np.empty(population, np.int64)
     ways = np.empty((0, 0))
     if rules.initial == Initial.rejection:
         ways = compute_free_ways(target, free, ground, rules.most_nodes)
@@ -319,13 +323,12 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         if lengths[i] == 0:
             none = np.full(1, np.inf)
             return _Outcome(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
-    children, child_lengths = paths.copy(), lengths.copy()
-    objective, encounters = np.empty(population), np.empty(population, dtype=np.int64)
+    objective, encounters = np.empty(population), np.empty(population, np.int64)
     # The best of n paths has weight n, the worst 1.
     ranks = np.arange(population, 0, -1).astype(np.float64)
-    neighbours = np.empty(MOST_NEIGHBOURS, dtype=np.int64)
+    neighbours = np.empty(MOST_NEIGHBOURS, np.int64)
     history = np.empty(rules.generations + 1)
-    best, best_length, best_objective, best_encounters = paths[0].copy(), 0, np.inf, 0
+    best, best_objective, best_encounters = paths[0].copy(), np.inf, 0
     last_gain = evaluations = feasible = losses = 0
     diversity = 0.0
 
@@ -338,14 +341,8 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         first = order[0]
         # A gain within rounding must not put off the end that `stall` sets.
         if objective[first] < best_objective - _IMPROVEMENT:
-            if len(best) < lengths[first]:
-                best = np.empty(paths.shape[1], dtype=np.int64)
-            best_length, best_objective, best_encounters = (
-                lengths[first],
-                objective[first],
-                encounters[first],
-            )
-            copy(paths[first, :best_length], best)
+            best, best_objective = paths[first, : lengths[first]].copy(), objective[first]
+            best_encounters = encounters[first]
             last_gain = generation
         history[generation] = best_objective
         stalls = generation - last_gain >= rules.stall
@@ -360,10 +357,9 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             parents = np.empty_like(order)
             for i in range(population):
                 parents[i] = order[draw_below(moves, population // 2)]
-        # A child has at most the nodes of both parents; arrays only grow, so they are rarely made
-        # anew.
-        if rules.cut == Cut.independent and 2 * lengths.max() > children.shape[1]:
-            children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
+        # A child has at most the nodes of both parents.
+        children = np.empty((population, 2 * lengths.max()), np.int64)
+        child_lengths = np.empty_like(lengths)
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
@@ -380,10 +376,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             child_lengths[i + 1] = join(
                 paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1]
             )
-        if children.shape[1] > paths.shape[1]:
-            paths = np.empty_like(children)
-        paths, children = children, paths
-        lengths, child_lengths = child_lengths, lengths
+        paths, lengths = children, child_lengths
         for i in range(population):
             # Feasibility is asked before and after each mutation, for the share that mutation
             # destroys.
@@ -396,17 +389,15 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
                     feasible += was_feasible
                     losses += was_feasible and count_obstacles_along(path, ground) > 0
         if rules.elitism:
-            copy(best[:best_length], paths[0])
-            lengths[0] = best_length
+            copy(best, paths[0])
+            lengths[0] = len(best)
 
     if rules.result == Result.last_generation:
         # The last generation was evaluated, but not bred from, so `first` is its best.
-        best = paths[first]
-        best_length = lengths[first]
-        best_objective = objective[first]
+        best, best_objective = paths[first, : lengths[first]].copy(), objective[first]
         best_encounters = encounters[first]
     return _Outcome(
-        best[:best_length].copy(),
+        best,
         best_objective,
         best_encounters,
         history[: generation + 1].copy(),
@@ -450,7 +441,7 @@ def measure_node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -
 
     It is 0 without inner nodes. cells: number of cells.
     """
-    having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
+    having, last = np.zeros(cells, np.int64), np.full(cells, -1)
     for i in range(len(paths)):
         for k in range(1, lengths[i] - 1):
             if last[paths[i, k]] != i:

@@ -83,46 +83,26 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     tharwat2018, Figure 22; elhoseny2017, Tables 2, 3 and 6.
     """
     neighbours = settings.neighbours if settings.links == Links.nearest else None
-    drawn, way = 0, ()
-    # Later roadmaps take further numbers of the same generator.
-    while drawn < settings.attempts and not len(way):
-        length, way, roads = search_roadmap(
-            problem, rng, settings.nodes, neighbours, settings.d_min
-        )
-        drawn += 1
-    path = Path("polyline", way) if len(way) else None
-    return Plan.of_one(path, length, "direct", {"roads": roads})._replace(evaluations=drawn)
-
-
-def search_roadmap(
-    problem: Problem,
-    rng: np.random.Generator,
-    nodes: int,
-    neighbours: int | None,
-    d_min: float = 0.0,
-) -> tuple[float, np.ndarray, int]:
-    """Draw a random roadmap and find the shortest path along it.
-
-    Returns the path's length and points (n, 2), infinite and empty if there is none, and the number
-    of links.
-
-    neighbours: how many of its nearest nodes a node may be linked with, None for all.
-    """
-    workspace = problem.workspace
+    workspace, d_min = problem.workspace, settings.d_min
     low, high, is_free, sees = (
         _prepare_grid(workspace, d_min)
         if isinstance(workspace, Grid)
         else _prepare_circles(workspace, d_min)
     )
-    points = np.concatenate(
-        [[problem.start, problem.target], _draw_free_points(rng, nodes, low, high, is_free)]
-    )
-    one, other = _list_pairs(points, neighbours)
-    seen = sees(points[one], points[other])
-    one, other = one[seen], other[seen]
-    lengths = np.hypot(*(points[one] - points[other]).T)
-    length, way = _find_shortest_way(len(points), one, other, lengths)
-    return length, points[way], len(one)
+    drawn, way = 0, ()
+    # Later roadmaps take further numbers of the same generator.
+    while drawn < settings.attempts and not len(way):
+        free = _draw_free_points(rng, settings.nodes, low, high, is_free)
+        points = np.concatenate([[problem.start, problem.target], free])
+        one, other = _list_pairs(points, neighbours)
+        seen = sees(points[one], points[other])
+        one, other = one[seen], other[seen]
+        lengths = np.hypot(*(points[one] - points[other]).T)
+        length, nodes = _find_shortest_way(len(points), one, other, lengths)
+        way = points[nodes]
+        drawn += 1
+    path = Path("polyline", way) if len(way) else None
+    return Plan.of_one(path, length, "direct", {"roads": len(one)})._replace(evaluations=drawn)
 
 
 def _prepare_circles(circles: Circles, d_min: float) -> tuple:
@@ -133,12 +113,12 @@ def _prepare_circles(circles: Circles, d_min: float) -> tuple:
     """
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
-    return (
-        low,
-        high,
-        partial(_is_outside, circles.centres, radii),
-        partial(_is_visible, centres=circles.centres, radii=radii),
-    )
+
+    def is_free(points: np.ndarray) -> np.ndarray:
+        apart = np.hypot(*(points[:, None] - circles.centres).transpose(2, 0, 1))
+        return (apart >= radii).all(axis=1)
+
+    return low, high, is_free, partial(_is_visible, centres=circles.centres, radii=radii)
 
 
 def _prepare_grid(grid: Grid, d_min: float) -> tuple:
@@ -150,7 +130,15 @@ def _prepare_grid(grid: Grid, d_min: float) -> tuple:
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
     low, high = grid.in_units(np.array([[0.5, 0.5], np.array(grid.occupied.shape[::-1]) - 0.5]))
-    return low, high, partial(_is_in_free_cells, grid), partial(_find_free_segments, grid)
+
+    def is_free(points: np.ndarray) -> np.ndarray:
+        column, row = np.floor(grid.in_cells(points)).astype(int).T
+        return ~grid.occupied[row, column]
+
+    def sees(starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
+        return _find_free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
+
+    return low, high, is_free, sees
 
 
 def _draw_free_points(
@@ -171,28 +159,12 @@ def _draw_free_points(
     return free[:nodes]
 
 
-def _is_outside(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Tell which points (n, 2) lie in no circle."""
-    return (np.hypot(*(points[:, None] - centres).transpose(2, 0, 1)) >= radii).all(axis=1)
-
-
-def _is_in_free_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Tell which points (n, 2) of a grid lie in free cells."""
-    column, row = np.floor(grid.in_cells(points)).astype(int).T
-    return ~grid.occupied[row, column]
-
-
-def _find_free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
-    """Tell which segments between two arrays of points (n, 2) touch no occupied cell."""
-    return _find_free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
-
-
 @compile_kernel
 def _find_free_legs(occupied, starts, targets):
     """Tell which legs between two arrays of points (n, 2), in cells, touch no occupied cell."""
-    free = np.empty(len(starts), dtype=np.bool_)
+    free = np.empty(len(starts), np.bool_)
     for i in range(len(starts)):
-        free[i] = is_free_leg(occupied, starts[i, 0], starts[i, 1], targets[i, 0], targets[i, 1])
+        free[i] = is_free_leg(occupied, starts[i], targets[i])
     return free
 
 
@@ -208,7 +180,7 @@ def _list_pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray,
 
     # Every node is the nearest to itself.
     nearest, node = KDTree(points).query(points, neighbours + 1)[1], np.arange(count)[:, None]
-    linked = np.zeros(count * count, dtype=bool)
+    linked = np.zeros(count * count, bool)
     linked[np.minimum(node, nearest) * count + np.maximum(node, nearest)] = True
     linked[:: count + 1] = False
     return np.divmod(np.flatnonzero(linked), count)
@@ -223,7 +195,7 @@ def _is_visible(
     way = targets - starts
     # For a single point any share along it is valid.
     square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)
-    visible = np.ones(len(way), dtype=bool)
+    visible = np.ones(len(way), bool)
     for centre, radius in zip(centres, radii):
         share = np.clip(((centre - starts) * way).sum(axis=1) / square, 0, 1)
         nearest = starts + share[:, None] * way
@@ -262,4 +234,4 @@ def _find_shortest_way(count, tails, heads, lengths):
     way = [1]
     while before[way[-1]] >= 0:
         way.append(before[way[-1]])
-    return far[1], np.array(way[::-1]) if far[1] < np.inf else np.empty(0, dtype=np.int64)
+    return far[1], np.array(way[::-1]) if far[1] < np.inf else np.empty(0, np.int64)

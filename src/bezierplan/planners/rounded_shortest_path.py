@@ -8,15 +8,6 @@ check then judges the path. The aims, in this order: as few corners as possible 
 tightest turn is as wide as can be, up to the radius that is asked; then the others are; and the
 path is no longer than allowed. Radii come from one fixed ladder, whatever is asked, so asking for
 more never gives less.
-
-At each obstacle corner around which the shortest path turns, a circle of the turning radius is
-placed so that it contains the corner; the path is a string of straight legs and arcs pulled tight
-around these circles, each of which lies as deep behind its corner as the string pulls it. Corners
-too close together for two circles, such as those at the end of a wall, share one. The certified
-check then judges the path. What is wanted, in this order: as few corners as possible stay sharp;
-the tightest turn is as wide as can be, up to the radius that is asked; then the others are; and the
-path is no longer than allowed. Radii come from one fixed ladder, whatever is asked, so asking for
-more never gives less.
 """
 
 import math
@@ -26,13 +17,14 @@ import numpy as np
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import find_first_collision
-from bezierplan.geometry.region import build_region, from_origin
+from bezierplan.geometry.checker.hulls import measure_distance
+from bezierplan.geometry.region import Region, build_region, from_origin
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, cross, normalise
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("turns", "corners", "least_radius")
@@ -72,12 +64,18 @@ _ON_CIRCLE = 1e-3
 # A share by which lengths may differ by rounding.
 _SAME = 1e-9
 
+# The side of start and target, which are turned around on neither.
+_NO_SIDE = 2.0
+
 # What a trial of radii can find.
 _FREE, _BLOCKED, _CROWDED, _TOO_LONG = range(4)
 
 
 class Turns(NamedTuple):
-    """The turns of the path, from start to target, each (n,) or (n, 2).
+    """The turns of the path, each (n,) or (n, 2).
+
+    In a `Course` start and target are the first and the last, with a radius of 0: so a leg leads
+    from one turn to the next, whatever they are.
 
     corner: the obstacle's corner, or the centre of a circular obstacle.
     radius: the obstacle's, 0 for a corner.
@@ -97,28 +95,32 @@ class Turns(NamedTuple):
 class Course(NamedTuple):
     """Conditions that the path must suit.
 
-    ends: start and target (2, 2).
+    turns: (n,), which start and target begin and end.
+    region: what is blocked.
     origin: (2,), the region's.
     limit: the length that it may have at most.
     trials: (1,) how many paths have been tried.
     """
 
-    ends: np.ndarray
+    turns: Turns
+    region: Region
     origin: np.ndarray
     limit: float
     trials: np.ndarray
 
 
 class String(NamedTuple):
-    """A string pulled tight around m circles, in arrays with room for one circle a turn.
+    """A string pulled tight around m circles, in arrays (n, ...) with room for one circle a turn.
 
-    crowd: the number of a circle that has no room beside its neighbours, or -1.
+    Start and target are the circles 0 and m + 1, of radius 0.
+
+    crowd: the number of a circle that has no room beside its neighbours, or 0.
     count: m.
     first, last: the turns that a circle contains.
-    centres: (m, 2).
-    radii: (m,).
-    legs: (m + 1, 2, 2) ends of the straight parts.
-    sweeps: (m,) angles of the arcs, each in the sense of its turn.
+    centres: (n, 2).
+    radii: (n,).
+    legs: (n, 2, 2) ends of the straight part that leads to a circle.
+    sweeps: (n,) angles of the arcs, each in the sense of its turn.
     """
 
     crowd: int
@@ -199,21 +201,26 @@ def _round(
     paths tried.
     """
     blocked = build_region(problem.workspace)
-    course = Course(
-        np.array([problem.start, problem.target], dtype=float),
-        -from_origin(np.zeros(2), blocked),
-        (1 + _SAME) * (1 + settings.excess) * bound.length,
-        np.zeros(1, dtype=np.int64),
-    )
+    trials = np.zeros(1, np.int64)
     # Around corners of a grown obstacle there may be less room than for a circle; then each vertex
     # of the shortest path is a turn of its own.
     for workspace in (problem.workspace, None):
-        turns = find_turns(bound.points, workspace)
-        radii, is_free = _widen(course, turns, blocked, bound.length, settings.turning_radius)
+        inner = find_turns(bound.points, workspace)
+        turns = Turns(*(np.pad(each, [(1, 1), (0, 0)][: each.ndim]) for each in inner))
+        turns.corner[[0, -1]] = problem.start, problem.target
+        turns.side[[0, -1]] = _NO_SIDE
+        course = Course(
+            turns,
+            blocked,
+            -from_origin(np.zeros(2), blocked),
+            (1 + _SAME) * (1 + settings.excess) * bound.length,
+            trials,
+        )
+        radii, is_free = _widen(course, bound.length, settings.turning_radius)
         if is_free:
             break
-    points, _ = _draw(course, turns, _shorten(course, turns, radii))
-    return points, radii, int(course.trials[0])
+    points, _ = _draw(turns, _shorten(turns, radii))
+    return points, radii[1:-1], int(trials[0])
 
 
 def find_turns(points: np.ndarray, workspace: object) -> Turns:
@@ -221,13 +228,11 @@ def find_turns(points: np.ndarray, workspace: object) -> Turns:
 
     Around circles and round corners the vertices of an arc are one turn.
     """
-    heading = _normalise(np.diff(points, axis=0))
-    bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
-    bends = np.flatnonzero(
-        (np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0)
-    )
+    heading = normalise(np.diff(points, axis=0))
+    bend, along = cross(heading[:-1], heading[1:]), (heading[:-1] * heading[1:]).sum(axis=1)
+    bends = np.flatnonzero((np.abs(bend) > _STRAIGHT) | (along < 0))
     corner, radius = points[bends + 1], np.zeros(len(bends))
-    first = np.ones(len(bends), dtype=bool)
+    first = np.ones(len(bends), bool)
     centres, radii, near = _list_discs(workspace)
     if len(bends) and len(radii):
         depth = np.hypot(*(corner[:, None] - centres).transpose(2, 0, 1)) - radii
@@ -238,7 +243,7 @@ def find_turns(points: np.ndarray, workspace: object) -> Turns:
         first[1:] = ~(round_circle[1:] & round_circle[:-1] & (nearest[1:] == nearest[:-1]))
     begin = np.flatnonzero(first)
     end = np.append(begin[1:], len(bends))[: len(begin)] - 1
-    angle = np.abs(np.arctan2(bend, (heading[:-1] * heading[1:]).sum(axis=1)))[bends]
+    angle = np.abs(np.arctan2(bend, along))[bends]
     return Turns(
         corner[begin],
         radius[begin],
@@ -269,64 +274,57 @@ def _list_discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
     return np.empty((0, 2)), np.empty(0), 0.0
 
 
-def _normalise(vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 2) of length 1, but for vectors of length 0, which stay."""
-    return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
-
-
 @compile_kernel
-def _widen(course, turns, region, shortest, wish):
+def _widen(course, shortest, wish):
     """Find the widest radii: the radius (n,) of each turn, and whether the path is free."""
     levels = _list_radii(min(wish, _TIGHTEST * shortest), min(wish, _WIDEST * shortest))
     top = len(levels) - 1
-    radii = turns.radius.copy()
+    radii = course.turns.radius.copy()
 
     # Turns without room for the least radius stay corners. The nearer end of a leg that meets
     # something may not have been to blame, so each is tried again.
-    live = np.ones(len(radii), dtype=np.bool_)
-    verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[0]))
+    live = np.ones(len(radii), np.bool_)
+    live[0] = live[-1] = False
+    verdict, first, last = _try(course, radii, live, levels[0])
     while verdict != _FREE and live.any():
         if not live[first : last + 1].any():
-            first, last = 0, len(live) - 1
+            live[:] = False
         live[first : last + 1] = False
-        verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[0]))
-    for i in np.flatnonzero(~live):
+        verdict, first, last = _try(course, radii, live, levels[0])
+    for i in np.flatnonzero(~live)[1:-1]:
         live[i] = True
-        live[i] = _try(course, turns, region, _raise(radii, turns, live, levels[0]))[0] == _FREE
+        live[i] = _try(course, radii, live, levels[0])[0] == _FREE
 
     # The tightest turn. Wider circles have less room beside each other, and strings around them are
     # longer; but a path that meets something at some radius may be free at a larger one.
     k = top
-    while (
-        k > _STRIDE
-        and _try(course, turns, region, _raise(radii, turns, live, levels[k]))[0] >= _CROWDED
-    ):
+    while k > _STRIDE and _try(course, radii, live, levels[k])[0] >= _CROWDED:
         k -= _STRIDE
     k = min(k + _STRIDE, top)
-    while k > 0 and _try(course, turns, region, _raise(radii, turns, live, levels[k]))[0] != _FREE:
+    while k > 0 and _try(course, radii, live, levels[k])[0] != _FREE:
         k -= 1
-    radii = _raise(radii, turns, live, levels[k])
+    radii = _raise(course.turns, radii, live, levels[k])
 
     # The others grow together, and whichever meets something stops.
     while k < top and live.any():
-        verdict, first, last = _try(course, turns, region, _raise(radii, turns, live, levels[top]))
+        verdict, first, last = _try(course, radii, live, levels[top])
         if verdict == _FREE:
-            return _raise(radii, turns, live, levels[top]), True
+            return _raise(course.turns, radii, live, levels[top]), True
         above = top
         while above - k > 1:
             # A bisection: here the path is free at k and not at `above`.
             middle = (k + above) // 2
-            there = _try(course, turns, region, _raise(radii, turns, live, levels[middle]))
+            there = _try(course, radii, live, levels[middle])
             if there[0] == _FREE:
                 k = middle
             else:
                 above = middle
                 verdict, first, last = there
-        radii = _raise(radii, turns, live, levels[k])
+        radii = _raise(course.turns, radii, live, levels[k])
         if verdict == _TOO_LONG or not live[first : last + 1].any():
             break
         live[first : last + 1] = False
-    return radii, _try(course, turns, region, radii)[0] == _FREE
+    return radii, _try(course, radii, np.zeros_like(live), 0.0)[0] == _FREE
 
 
 @compile_kernel
@@ -344,75 +342,69 @@ def _list_radii(least, most):
 
 
 @compile_kernel
-def _raise(radii, turns, live, level):
+def _raise(turns, radii, live, level):
     """Return radii (n,) with those of live turns raised to a level, or as wide as the obstacle."""
     return np.where(live, np.maximum(level, turns.radius), radii)
 
 
 @compile_kernel
-def _try(course, turns, region, radii):
-    """Try the path with some radii (n,).
+def _try(course, radii, live, level):
+    """Try the path with some radii (n,), those of live turns raised to a level.
 
     Returns what was found, and if it is blocked, the first and the last of the turns that are to
     blame.
     """
     course.trials[0] += 1
-    string = _shorten(course, turns, radii)
-    if string.crowd >= 0:
+    string = _shorten(course.turns, _raise(course.turns, radii, live, level))
+    if string.crowd > 0:
         return _CROWDED, string.first[string.crowd], string.last[string.crowd]
     if _measure_string(string) > course.limit:
         return _TOO_LONG, 0, len(radii) - 1
-    points, part = _draw(course, turns, string)
-    piece = np.empty((1, 4, 2))
+    points, part = _draw(course.turns, string)
     for k in range(len(part)):
-        for i in range(4):
-            for axis in range(2):
-                piece[0, i, axis] = points[3 * k + i, axis] - course.origin[axis]
-        at = find_first_collision(piece, region)[0]
-        if at < np.inf and string.count == 0:
-            return _BLOCKED, 0, -1
+        piece = points[3 * k : 3 * k + 4] - course.origin
+        at = find_first_collision(piece.reshape((1, 4, 2)), course.region)[0]
         if at < np.inf:
             # An arc's own turns are to blame, or those at the nearer end of a leg.
-            circle = part[k] // 2 - (part[k] % 2 == 0 and at < 0.5)
-            circle = min(max(circle, 0), string.count - 1)
+            circle = min(max((part[k] - (at < 0.5)) // 2, 1), string.count)
             return _BLOCKED, string.first[circle], string.last[circle]
     return _FREE, 0, 0
 
 
 @compile_kernel
-def _shorten(course, turns, radii):
+def _shorten(turns, radii):
     """Return the string around circles of some radii (n,)."""
-    string, other = _pull(course, turns, radii, False), _pull(course, turns, radii, True)
+    string, other = _pull(turns, radii, False), _pull(turns, radii, True)
     return other if _measure_string(other) < _measure_string(string) else string
 
 
 @allocation_free
 def _measure_string(string):
     """Return the length of a string, infinite if its circles are crowded."""
-    length = 0.0 if string.crowd < 0 else math.inf
-    for (ax, ay), (bx, by) in string.legs[: string.count + 1]:
-        length += math.hypot(bx - ax, by - ay)
-    for k in range(string.count):
+    length = 0.0 if string.crowd == 0 else math.inf
+    for begin, end in string.legs[1 : string.count + 2]:
+        length += measure_distance(begin, end)
+    for k in range(1, string.count + 1):
         length += string.radii[k] * string.sweeps[k]
     return length
 
 
 @compile_kernel
-def _pull(course, turns, radii, patient):
+def _pull(turns, radii, patient):
     """Pull the string tight around circles of some radii (n,).
 
     Circles that are in each other's way join at once or, if patient, when the others have come to
     rest: either may be shorter. Each circle lies where the string's pull and its corners hold it,
-        as far inwards as these allow.
+    as far inwards as these allow.
     """
     n = len(radii)
-    first, last, count = np.arange(n), np.arange(n), n
-    centres, reach, side = np.empty((n, 2)), radii.copy(), turns.side.copy()
-    legs, heading = np.empty((n + 1, 2, 2)), np.empty((n + 1, 2))
-    inward, sweeps, wrong = np.empty((n, 2)), np.empty(n), -1
+    first, last, count = np.arange(n), np.arange(n), n - 2
+    centres, reach, side = turns.corner.copy(), radii.copy(), turns.side.copy()
+    legs, heading = np.empty((n, 2, 2)), np.empty((n, 2))
+    inward, sweeps, wrong = np.empty((n, 2)), np.empty(n), 0
     pulls = 0
     while pulls < _PULLS:
-        for k in range(count):
+        for k in range(1, count + 1):
             for axis in range(2):
                 # Half of the old direction and half of the new one: without the old one the
                 # circles would swing to and fro.
@@ -425,9 +417,14 @@ def _pull(course, turns, radii, patient):
                 inward[k] /= size
             if not _place(turns, first[k], last[k], reach[k], inward[k], centres[k]):
                 return String(k, count, first, last, centres, reach, legs, sweeps)
-        _separate_circles(course.ends, turns, first, last, count, reach, side, centres)
-        wrong = crowd = _join(course.ends, centres, side * reach, count, legs, heading)
-        for k in range(count):
+        _separate_circles(turns, first, last, count, reach, side, centres)
+        wrong, signed_radii = 0, side * reach
+        for k in range(1, count + 2):
+            if not _draw_leg(centres, signed_radii, k - 1, k, legs[k], heading[k]):
+                # The last leg leads to no circle, so it names the one it comes from.
+                wrong = min(k, count)
+        crowd = wrong
+        for k in range(1, count + 1):
             expected = turns.angle[first[k] : last[k] + 1].sum()
             cross = heading[k, 0] * heading[k + 1, 1] - heading[k, 1] * heading[k + 1, 0]
             dot = heading[k, 0] * heading[k + 1, 0] + heading[k, 1] * heading[k + 1, 1]
@@ -438,45 +435,43 @@ def _pull(course, turns, radii, patient):
             if sweeps[k] < -_STRAIGHT and (wrong == crowd or sweeps[k] < sweeps[wrong]):
                 wrong = k
         pulls += 1
-        if crowd >= 0 and pulls > _CROWDED_PULLS:
+        if crowd > 0 and pulls > _CROWDED_PULLS:
             break
-        if wrong < 0:
-            continue
         # A circle that bends the string back shares one with its nearer neighbour, unless the
         # string passes outside its corners without it.
-        if patient and pulls < _PULLS:
+        if wrong == 0 or (patient and pulls < _PULLS):
             continue
-        gone, neighbour = wrong, _find_neighbour(centres, side, count, wrong)
+        gone, neighbour = wrong, _find_neighbour(centres, side, wrong)
         x, y = centres[neighbour]
-        is_inside = neighbour >= 0 and _contains_corners(
+        is_inside = neighbour > 0 and _contains_corners(
             turns, first[wrong], last[wrong], reach[neighbour], x, y
         )
-        if not is_inside and _is_needless(
-            course.ends, turns, centres, side * reach, first, last, count, wrong
-        ):
+        if not is_inside and _is_needless(turns, centres, signed_radii, first, last, wrong):
             if pulls < _PULLS:
                 continue
-        elif neighbour < 0:
+        elif neighbour == 0:
             continue
         else:
             gone, neighbour = max(wrong, neighbour), min(wrong, neighbour)
             last[neighbour] = last[gone]
             reach[neighbour] = max(reach[neighbour], reach[gone])
         count -= 1
-        for k in range(gone, count):
+        for k in range(gone, count + 2):
             first[k], last[k] = first[k + 1], last[k + 1]
             reach[k], side[k] = reach[k + 1], side[k + 1]
+            centres[k, 0], centres[k, 1] = centres[k + 1, 0], centres[k + 1, 1]
+        # The rest has to settle anew without the circle.
         pulls = 0
     return String(wrong, count, first, last, centres, reach, legs, sweeps)
 
 
 @allocation_free
-def _find_neighbour(centres, side, count, k):
-    """Find the nearer neighbour of a circle to the same side, or return -1."""
-    nearest, gap = -1, np.inf
+def _find_neighbour(centres, side, k):
+    """Find the nearer neighbour of a circle to the same side, or return 0."""
+    nearest, gap = 0, np.inf
     for j in (k - 1, k + 1):
-        if 0 <= j < count and side[j] == side[k]:
-            apart = math.hypot(centres[j, 0] - centres[k, 0], centres[j, 1] - centres[k, 1])
+        if side[j] == side[k]:
+            apart = measure_distance(centres[j], centres[k])
             if apart < gap:
                 nearest, gap = j, apart
     return nearest
@@ -519,7 +514,7 @@ def _place(turns, first, last, radius, inward, centre):
 
 
 @allocation_free
-def _separate_circles(ends, turns, first, last, count, reach, side, centres):
+def _separate_circles(turns, first, last, count, reach, side, centres):
     """Move circles apart, as far as their corners allow, where no leg of a string fits between
     them.
 
@@ -527,22 +522,19 @@ def _separate_circles(ends, turns, first, last, count, reach, side, centres):
     """
     for _ in range(_PUSHES):
         largest = 0.0
-        for k in range(-1, count):
-            if 0 <= k < count - 1 and side[k] == side[k + 1]:
+        for k in range(count + 1):
+            if side[k] == side[k + 1]:
                 continue
-            x, y = centres[k] if k >= 0 else ends[0]
-            next_x, next_y = centres[k + 1] if k + 1 < count else ends[1]
-            radius = reach[k] if k >= 0 else 0.0
-            next_radius = reach[k + 1] if k + 1 < count else 0.0
-            apart = math.hypot(next_x - x, next_y - y)
-            missing = (1.0 + 2.0 * _SAME) * (radius + next_radius) - apart
+            across, up = centres[k + 1, 0] - centres[k, 0], centres[k + 1, 1] - centres[k, 1]
+            apart, needed = math.hypot(across, up), reach[k] + reach[k + 1]
+            missing = (1.0 + 2.0 * _SAME) * needed - apart
             if apart == 0.0 or missing <= 0.0:
                 continue
-            largest = max(largest, missing / (radius + next_radius))
+            largest = max(largest, missing / needed)
             for j, share in ((k, -0.5), (k + 1, 0.5)):
-                if 0 <= j < count:
-                    centres[j, 0] += share * missing / apart * (next_x - x)
-                    centres[j, 1] += share * missing / apart * (next_y - y)
+                if 0 < j <= count:
+                    centres[j, 0] += share * missing / apart * across
+                    centres[j, 1] += share * missing / apart * up
                     _hold(turns, first[j], last[j], reach[j], centres[j])
         if largest <= _SAME:
             break
@@ -570,31 +562,14 @@ def _contains_corners(turns, first, last, radius, x, y):
 
 
 @allocation_free
-def _join(ends, centres, signed_radii, count, legs, heading):
-    """Draw the legs between circles, and their directions.
-
-    Returns the number of a circle that lies so close to another one that no leg fits between them,
-    or -1.
-    """
-    crowd = -1
-    for k in range(count + 1):
-        if not _draw_leg(ends, centres, signed_radii, count, k - 1, k, legs[k], heading[k]):
-            # The last leg leads to no circle, so it names the one it comes from.
-            crowd = min(k, count - 1)
-    return crowd
-
-
-@allocation_free
-def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
-    """Draw the leg (2, 2) from circle k, or the start, to circle j, or the target, and its unit
-    direction (2,), and return whether it fits.
+def _draw_leg(centres, signed_radii, k, j, leg, heading):
+    """Draw the leg (2, 2) from circle k to circle j and its unit direction (2,), and return whether
+    it fits.
 
     signed_radii: positive where the string turns left.
     """
-    ax, ay = centres[k] if k >= 0 else ends[0]
-    bx, by = centres[j] if j < count else ends[1]
-    radius = signed_radii[k] if k >= 0 else 0.0
-    next_radius = signed_radii[j] if j < count else 0.0
+    (ax, ay), (bx, by) = centres[k], centres[j]
+    radius, next_radius = signed_radii[k], signed_radii[j]
     distance = math.hypot(bx - ax, by - ay)
     across = next_radius - radius
     fits = abs(across) <= distance
@@ -612,14 +587,14 @@ def _draw_leg(ends, centres, signed_radii, count, k, j, leg, heading):
 
 
 @compile_kernel
-def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
+def _is_needless(turns, centres, signed_radii, first, last, k):
     """Tell whether the leg past a circle leaves its corners on the side to which the path turns
     there.
 
     It leads from the circle before to the next.
     """
     leg, heading = np.empty((2, 2)), np.empty(2)
-    if not _draw_leg(ends, centres, signed_radii, count, k - 1, k + 1, leg, heading):
+    if not _draw_leg(centres, signed_radii, k - 1, k + 1, leg, heading):
         return False
     for i in range(first[k], last[k] + 1):
         x, y = turns.corner[i, 0] - leg[0, 0], turns.corner[i, 1] - leg[0, 1]
@@ -629,23 +604,23 @@ def _is_needless(ends, turns, centres, signed_radii, first, last, count, k):
 
 
 @compile_kernel
-def _draw(course, turns, string):
+def _draw(turns, string):
     """Draw legs and arcs as cubic pieces.
 
     Returns their control points (3 k + 1, 2), and what each piece (k,) is: 2 i for the leg to
     circle i, 2 i + 1 for the arc around it.
     """
     most = string.count * (_MOST_PIECES + 1) + 1
-    points, part = np.empty((3 * most + 1, 2)), np.empty(most, dtype=np.int64)
-    points[0] = course.ends[0]
+    points, part = np.empty((3 * most + 1, 2)), np.empty(most, np.int64)
+    points[0] = turns.corner[0]
     pieces = 0
-    for k in range(string.count + 1):
+    for k in range(1, string.count + 2):
         begin, end = string.legs[k]
         for third in range(1, 4):
             points[3 * pieces + third] = begin + (end - begin) * (third / 3)
         part[pieces] = 2 * k
         pieces += 1
-        if k == string.count or string.radii[k] == 0.0 or string.sweeps[k] <= 0.0:
+        if string.radii[k] == 0.0 or string.sweeps[k] <= 0.0:
             continue
         arcs = math.ceil(string.sweeps[k] / _PIECE_ANGLE)
         angle = turns.side[string.first[k]] * string.sweeps[k] / arcs
@@ -664,5 +639,5 @@ def _draw(course, turns, string):
             pieces += 1
         # Rounding of the rotations must not leave a gap to the next leg.
         points[3 * pieces] = string.legs[k + 1, 0]
-    points[3 * pieces] = course.ends[1]  # to the last bit
+    points[3 * pieces] = turns.corner[-1]  # to the last bit
     return points[: 3 * pieces + 1], part[:pieces]

@@ -226,7 +226,7 @@ def _find_border(
         low, high = around[:2] - (margin or 0.0), around[2:] + (margin or 0.0)
     else:
         try:
-            low, high = np.array(bbox, dtype=float).reshape(2, -1)[:, :2]  # without heights
+            low, high = np.array(bbox, float).reshape(2, -1)[:, :2]  # without heights
         except (ValueError, TypeError, OverflowError):
             raise ValueError(
                 "no border; expected a polygon with role border, "
@@ -247,7 +247,7 @@ def _check_gaps(obstacles: list[Shape], frame: "shapely.Polygon") -> None:
     """Raise ValueError, naming the obstacle, for a gap that is neither closed nor open."""
     import shapely
 
-    shapes = np.array([shape.polygon for shape in obstacles], dtype=object)
+    shapes = np.array([shape.polygon for shape in obstacles], object)
     # Near pairs only, of which there are few. A shape's gap to itself is 0, which is closed.
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
     gaps = shapely.distance(shapes[near[0]], shapes[near[1]])

@@ -159,7 +159,7 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
     number within the limits of coordinates.
     """
     try:
-        heights = np.array([line.split() for line in reversed(lines)], dtype=float)
+        heights = np.array([line.split() for line in reversed(lines)], float)
     except ValueError:
         heights = np.empty(0)
     if heights.shape != shape:

@@ -49,54 +49,27 @@ class Ground(NamedTuple):
     energy: np.ndarray
 
 
+@lru_cache(maxsize=8)
 def build_ground(grid: Grid, friction: float, closed: bool = False) -> Ground:
     """Build the ground of a grid, with all its edges measured if it has at most `TABLE_CELLS`
     cells.
 
-    Do not modify the result.
+    Do not modify the result: it is kept for the next run on the same map.
     """
-    return _build_ground(*_build_key(grid, friction, closed))
-
-
-def find_least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
-    """Return the energy of `find_cheapest` on the ground of a grid, cached."""
-    return _find_least_energy(_build_key(grid, friction, closed), start, target)
-
-
-def _build_key(grid: Grid, friction: float, closed: bool) -> tuple:
-    """Build a key of all that determines the ground of a grid, so that it is built once per map."""
-    # Arrays cannot be keys of a cache, bytes can.
-    heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
-    return (
-        grid.occupied.shape,
-        grid.occupied.tobytes(),
-        heights,
-        float(friction),
-        closed,
-        TABLE_CELLS,
-    )
-
-
-@lru_cache(maxsize=8)
-def _build_ground(
-    shape: tuple[int, int],
-    occupied: bytes,
-    heights: bytes,
-    friction: float,
-    closed: bool,
-    table_cells: int,
-) -> Ground:
-    """Build the ground of a key, for `build_ground`."""
-    # Copies: for read-only arrays numba would compile the kernels once more.
-    cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
-    above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
-    bare = Ground(
-        cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0))
-    )
-    if cells.size > table_cells:
+    heights = np.empty((0, 0)) if grid.heights is None else grid.heights / grid.cell
+    # A copy: for a read-only array numba would compile the kernels once more.
+    cells, empty = grid.occupied.copy(), np.empty((0, 0))
+    bare = Ground(cells, heights, friction, closed, empty.astype(np.uint16), empty)
+    if cells.size > TABLE_CELLS:
         return bare
     encounters, energy = _build_tables(bare)
     return bare._replace(encounters=encounters, energy=energy)
+
+
+@lru_cache(maxsize=64)
+def find_least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
+    """Return the energy of `find_cheapest` on the ground of a grid, cached."""
+    return find_cheapest(build_ground(grid, friction, closed), start, target)[0]
 
 
 @compile_kernel
@@ -104,7 +77,7 @@ def _build_tables(ground):
     """Measure the edges between all pairs of cells."""
     cells = ground.occupied.size
     # Two bytes are enough for the cells of a map with a table, and save memory.
-    encounters, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
+    encounters, energy = np.empty((cells, cells), np.uint16), np.empty((cells, cells))
     # Back and forth an edge meets the same cells, but climbs differently.
     for one in range(cells):
         for other in range(one + 1):
@@ -195,12 +168,6 @@ def _measure_edge(ground, start, end):
     return encounters, climb
 
 
-@lru_cache(maxsize=64)
-def _find_least_energy(key: tuple, start: int, target: int) -> float:
-    """Return the least energy of a path on the ground of a key."""
-    return find_cheapest(_build_ground(*key), start, target)[0]
-
-
 def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
     """Find the path from cell to cell with the least energy that meets no obstacle.
 
@@ -208,7 +175,7 @@ def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.nd
     """
     energy, before = _find_cheapest(ground, start, target)
     if math.isinf(energy):
-        return energy, np.empty(0, dtype=np.int64)
+        return energy, np.empty(0, np.int64)
     path = [target]
     while path[-1] != start:
         path.append(int(before[path[-1]]))

@@ -157,3 +157,12 @@ def list_points(
     return np.array(
         [start, *centres[centres[0] == start : len(centres) - (centres[-1] == target)], target]
     )
+
+
+def drop_straight_vertices(points: np.ndarray) -> np.ndarray:
+    """Return a polyline (n, 2) without the vertices between two equal steps."""
+    steps = np.diff(points, axis=0)
+    # Steps between computed centres differ in their last bits.
+    turns = np.any(np.abs(steps[1:] - steps[:-1]) > 1e-9, axis=1)
+    # A single point is both the first and the last.
+    return points[np.concatenate([[True], turns, [True]])[-len(points) :]]

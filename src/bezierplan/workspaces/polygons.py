@@ -78,8 +78,8 @@ def list_rings_of_polygon(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
 
 
 def normalise(vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 2) of length 1."""
-    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+    """Return vectors (n, 2) of length 1, but for vectors of length 0, which stay."""
+    return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

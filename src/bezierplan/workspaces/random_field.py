@@ -43,7 +43,7 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     rng = generator(name, side, *problem["start"], *problem["target"], *count, problem["layout"])
     square = 0.0, side, 0.0, side
     empty = from_circles(Circles(square, np.empty((0, 2)), np.empty(0), description["unit"]))
-    ends = np.array([problem["start"], problem["target"]], dtype=float)
+    ends = np.array([problem["start"], problem["target"]], float)
     cells = end_cells(empty, problem)
     measure = description.get("radius_side", "own")
     radius = description["radius"] * (side if measure == "own" else measure)
@@ -113,7 +113,7 @@ def from_circles(circles: Circles) -> Grid:
     from bezierplan.workspaces.cells_in_circles import occupy
 
     count = round(circles.bounds[1]) + 1
-    occupied = np.zeros((count, count), dtype=bool)
+    occupied = np.zeros((count, count), bool)
     occupy(occupied, np.ascontiguousarray(circles.centres), np.ascontiguousarray(circles.radii))
     return Grid(occupied, 1.0, circles.unit, (-0.5, -0.5), circles)
 

@@ -259,7 +259,7 @@ def by_cells(grid: Grid, radius: float) -> Grid:
     walled = np.pad(grid.occupied, 1, constant_values=True)
     # Two squares are as far apart as their centres would be if one of them were a cell nearer in
     # both directions.
-    touching = binary_dilation(walled, np.ones((3, 3), dtype=bool))
+    touching = binary_dilation(walled, np.ones((3, 3), bool))
     occupied = walled | (distance_transform_edt(~touching) * grid.cell < radius - SLACK)
     if occupied.all():
         raise _describe_nothing_free(radius)

@@ -163,6 +163,6 @@ def _measure_shades(image: Any) -> tuple[np.ndarray, np.ndarray]:
     # 16 bits a pixel, without colours or transparency.
     if image.mode.startswith("I"):
         light = np.asarray(image, dtype=float) / 65535.0
-        return light, np.ones(light.shape, dtype=bool)
+        return light, np.ones(light.shape, bool)
     colours = np.asarray(image.convert("RGBA"))
     return colours[..., :3].mean(axis=2) / 255.0, colours[..., 3] > 0

@@ -155,7 +155,7 @@ def from_json(text: str) -> World:
     if "maps" in content:
         maps = tuple(map(_read_grid, content["maps"]))
         return ChangingCells(maps, np.array(content["moments"]), content["pace"], content["end"])
-    table = np.array(content["circles"], dtype=float).reshape(-1, 5)
+    table = np.array(content["circles"], float).reshape(-1, 5)
     return MovingCircles(
         bounds=tuple(content["bounds"]),
         walls=tuple(content["walls"]),

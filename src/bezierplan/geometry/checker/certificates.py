@@ -9,7 +9,13 @@ import math
 import numpy as np
 from numba.extending import overload
 
-from bezierplan.geometry.bins import Bins, columns_between, rows_between, rows_near
+from bezierplan.geometry.bins import (
+    Bins,
+    columns_between,
+    list_members,
+    rows_between,
+    rows_near,
+)
 from bezierplan.geometry.checker.hulls import (
     BINOMIAL,
     LARGEST_COORDINATE,
@@ -70,7 +76,7 @@ def bound_depth(points, region):
 
 
 @allocation_free
-def _find_element(x: float, cell: float, last: int) -> int:
+def _find_element(x, cell, last):
     """Return the index in the doubled grid of a coordinate.
 
     It is odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`.
@@ -83,7 +89,7 @@ def _find_element(x: float, cell: float, last: int) -> int:
 
 
 @allocation_free
-def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
+def _find_sides(index, cell, last):
     """Return the lowest and highest coordinate of the cells that touch an element: one cell for
     even indices, two for odd ones.
     """
@@ -93,9 +99,7 @@ def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
 
 
 @allocation_free
-def _count_blocked_elements(
-    counts: np.ndarray, bottom: int, top: int, left: int, right: int
-) -> int:
+def _count_blocked_elements(counts, bottom, top, left, right):
     """Count the blocked elements in a range of the doubled grid, both ends inclusive."""
     return (
         counts[top + 1, right + 1]
@@ -120,20 +124,15 @@ def _is_free_in_grid(points, region):
     rows, columns = region.blocked.shape
     cell = region.cell
     x_low, x_high, y_low, y_high = bound_box(points)
-    left, right = _find_element(x_low, cell, columns - 1), _find_element(x_high, cell, columns - 1)
-    bottom, top = _find_element(y_low, cell, rows - 1), _find_element(y_high, cell, rows - 1)
-    if _count_blocked_elements(region.counts, bottom, top, left, right) == 0:
-        return True
-
     # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
-    # seam, the range extends as far beyond the hull as a hull may reach into a rectangle.
-    reach = 2.0 * TOLERANCE
-    left = _find_element(x_low - reach, cell, columns - 1)
-    right = _find_element(x_high + reach, cell, columns - 1)
-    bottom, top = (
-        _find_element(y_low - reach, cell, rows - 1),
-        _find_element(y_high + reach, cell, rows - 1),
-    )
+    # seam, the second range extends as far beyond the hull as a hull may reach into a rectangle.
+    for reach in (0.0, 2.0 * TOLERANCE):
+        left = _find_element(x_low - reach, cell, columns - 1)
+        right = _find_element(x_high + reach, cell, columns - 1)
+        bottom = _find_element(y_low - reach, cell, rows - 1)
+        top = _find_element(y_high + reach, cell, rows - 1)
+        if reach == 0.0 and not _count_blocked_elements(region.counts, bottom, top, left, right):
+            return True
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False
     along_x, along_y = choose_direction(points)
@@ -173,9 +172,7 @@ def measure_distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins)
 
 
 @allocation_free
-def _bound_distance_to_edges(
-    x: float, y: float, other_x: float, other_y: float, edges: np.ndarray, bins: Bins
-) -> float:
+def _bound_distance_to_edges(x, y, other_x, other_y, edges, bins):
     """Return the least of all edges' larger distance from two points.
 
     Bins are looked at in square rings around the first point. Beyond a ring, edges are at least as
@@ -195,9 +192,8 @@ def _bound_distance_to_edges(
             for row in range(middle_row - ring, middle_row + ring + 1, step):
                 if not 0 <= row < bins.rows:
                     continue
-                number = column * bins.rows + row
-                for k in range(bins.first[number], bins.first[number + 1]):
-                    ax, ay, bx, by = edges[bins.members[k]]
+                for e in list_members(column, row, row, bins):
+                    ax, ay, bx, by = edges[e]
                     first = measure_distance_to_segment(x, y, ax, ay, bx, by)
                     if first < least:
                         other = measure_distance_to_segment(other_x, other_y, ax, ay, bx, by)
@@ -251,10 +247,16 @@ def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
     return math.sqrt(max(0.0, least))
 
 
+@allocation_free
+def _measure_depth_beyond_border(x, y, bounds):
+    """Return how far a point lies beyond the border, 0 within it."""
+    left, right, bottom, top = bounds
+    return math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
+
+
 def _measure_depth_in_circles(x, y, region):
     """Return a point's depth: the largest beyond the border or in a disc."""
-    left, right, bottom, top = region.bounds
-    depth = math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
+    depth = _measure_depth_beyond_border(x, y, region.bounds)
     for k in range(len(region.radii)):
         depth = max(
             depth, region.radii[k] - math.hypot(x - region.centres[k, 0], y - region.centres[k, 1])
@@ -302,9 +304,8 @@ def _is_free_in_circles(points, region):
 def _bound_depth_in_circles(points, region):
     """Return an upper bound of a curve's depth beyond the border and in discs."""
     bound = 0.0
-    left, right, bottom, top = region.bounds
     for x, y in points:
-        bound = max(bound, math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top)))
+        bound = max(bound, _measure_depth_beyond_border(x, y, region.bounds))
     for k in range(len(region.radii)):
         # No disc is deeper than its radius.
         if region.radii[k] > bound:
@@ -332,8 +333,7 @@ def _is_blocked_in_polygons(x, y, region):
     inside_free = False
     # Below and above all edges, as by rounding on the border, the ray meets none.
     for column in range(begin, bins.columns if 0 <= row < bins.rows else 0):
-        number = column * bins.rows + row
-        for e in bins.members[bins.first[number] : bins.first[number + 1]]:
+        for e in list_members(column, row, row, bins):
             ax, ay, bx, by = edges[e]
             if (ay > y) != (by > y):
                 at = ax + (y - ay) / (by - ay) * (bx - ax)
@@ -348,16 +348,15 @@ def _is_blocked_in_polygons(x, y, region):
     begin, end = columns_between(x - reach, x + reach, bins)
     low, high = rows_near(y - reach, y + reach, bins)
     for column in range(begin, end + 1):
-        for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-            for e in bins.members[bins.first[number] : bins.first[number + 1]]:
-                ax, ay, bx, by = edges[e]
-                if measure_distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
-                    return False
+        for e in list_members(column, low, high, bins):
+            ax, ay, bx, by = edges[e]
+            if measure_distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
+                return False
     return True
 
 
 @allocation_free
-def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
+def _measure_sides_of_edge(points, edge, normal):
     """Return the range of distances of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
@@ -377,8 +376,8 @@ def _is_free_in_polygons(points, region):
     x_low, x_high, y_low, y_high = hull_box = bound_box(points)
     along_x, along_y = choose_direction(points)
     across_low, across_high = measure_range_along(points, -along_y, along_x)
-    contacts = np.zeros(len(region.edges), dtype=np.bool_)
-    near = np.empty(len(region.edges), dtype=np.int64)
+    contacts = np.zeros(len(region.edges), np.bool_)
+    near = np.empty(len(region.edges), np.int64)
     count = 0
     bins = region.bins
     is_straight = measure_bulge(points) <= _APART
@@ -389,14 +388,13 @@ def _is_free_in_polygons(points, region):
         if is_straight:
             within = min(max(column, first), last)
             low, high = rows_between(points[0], points[-1], within, bins)
-        for place in range(column * bins.rows + low, column * bins.rows + high + 1):
-            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
-                if not contacts[e] and _can_touch(
-                    points, hull_box, along_x, along_y, across_low, across_high, region, e
-                ):
-                    contacts[e] = True
-                    near[count] = e
-                    count += 1
+        for e in list_members(column, low, high, bins):
+            if not contacts[e] and _can_touch(
+                points, hull_box, along_x, along_y, across_low, across_high, region, e
+            ):
+                contacts[e] = True
+                near[count] = e
+                count += 1
 
     remaining = count
     for e in near[:count]:
@@ -412,7 +410,7 @@ def _is_free_in_polygons(points, region):
 
 
 @allocation_free
-def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
+def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e):
     """Tell whether an edge may touch a hull with a bounding box, and a range across its
     direction.
     """
@@ -437,7 +435,7 @@ def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, regi
 
 
 @allocation_free
-def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high) -> int:
+def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high):
     """Return the number of edges of a chain of touched edges if a hull passes it on the free side,
     or 0.
 

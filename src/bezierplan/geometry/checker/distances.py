@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry.bins import Bins, columns_between, rows_near
+from bezierplan.geometry.bins import Bins, columns_between, list_members, rows_near
 from bezierplan.geometry.checker.certificates import (
     bound_depth,
     bound_distance_to_centre,
@@ -75,8 +75,8 @@ def find_least_clearance(
     dropped for both halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
-    counts = np.empty(STACK, dtype=np.int64)
-    obstacles = np.empty(len(edges) + len(radii), dtype=np.int64)
+    counts = np.empty(STACK, np.int64)
+    obstacles = np.empty(len(edges) + len(radii), np.int64)
     piece_of = np.full(len(edges), -1)
     discs = np.arange(len(edges), len(edges) + len(radii))
     least = math.inf
@@ -122,14 +122,7 @@ def find_least_clearance(
 
 
 @allocation_free
-def _find_edges_within(
-    reach: float,
-    points: np.ndarray,
-    bins: Bins,
-    piece: int,
-    piece_of: np.ndarray,
-    edges: np.ndarray,
-) -> int:
+def _find_edges_within(reach, points, bins, piece, piece_of, edges):
     """Find the edges in the bins within reach of a piece's chord, a few more rather than less.
 
     Their numbers go into `edges`; returns how many there are.
@@ -142,25 +135,16 @@ def _find_edges_within(
     first, last = columns_between(min(x, end_x) - reach, max(x, end_x) + reach, bins)
     low, high = rows_near(min(y, end_y) - reach, max(y, end_y) + reach, bins)
     for column in range(first, last + 1):
-        for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-            for k in range(bins.first[number], bins.first[number + 1]):
-                edge = bins.members[k]
-                if piece_of[edge] != piece:
-                    piece_of[edge] = piece
-                    edges[count] = edge
-                    count += 1
+        for edge in list_members(column, low, high, bins):
+            if piece_of[edge] != piece:
+                piece_of[edge] = piece
+                edges[count] = edge
+                count += 1
     return count
 
 
 @allocation_free
-def _measure_clearance_of_point(
-    x: float,
-    y: float,
-    obstacles: np.ndarray,
-    edges: np.ndarray,
-    centres: np.ndarray,
-    radii: np.ndarray,
-) -> float:
+def _measure_clearance_of_point(x, y, obstacles, edges, centres, radii):
     """Return the least distance of a point to some obstacles, by number: edges, then discs."""
     least = math.inf
     for obstacle in obstacles:
@@ -177,20 +161,12 @@ def _measure_clearance_of_point(
 
 
 @allocation_free
-def _bound_clearance(
-    points: np.ndarray,
-    bulge: float,
-    obstacle: int,
-    edges: np.ndarray,
-    centres: np.ndarray,
-    radii: np.ndarray,
-) -> float:
+def _bound_clearance(points, bulge, obstacle, edges, centres, radii):
     """Return a lower bound of the distance of a curve to an obstacle.
 
     A curve deviates from its chord by at most `bulge`.
     """
-    ax, ay = points[0, 0], points[0, 1]
-    bx, by = points[-1, 0], points[-1, 1]
+    (ax, ay), (bx, by) = points[0], points[-1]
     disc = obstacle - len(edges)
     if disc < 0:
         return max(
@@ -209,21 +185,20 @@ def _bound_clearance(
 
 
 @allocation_free
-def _measure_distance_of_segments(
-    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray
-) -> float:
+def _measure_distance_of_segments(a, b, c, d):
     """Return the distance of two segments, 0 if they cross."""
     if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
         return 0.0
+    (ax, ay), (bx, by), (cx, cy), (dx, dy) = a, b, c, d
     return min(
-        measure_distance_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]),
-        measure_distance_to_segment(b[0], b[1], c[0], c[1], d[0], d[1]),
-        measure_distance_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]),
-        measure_distance_to_segment(d[0], d[1], a[0], a[1], b[0], b[1]),
+        measure_distance_to_segment(ax, ay, cx, cy, dx, dy),
+        measure_distance_to_segment(bx, by, cx, cy, dx, dy),
+        measure_distance_to_segment(cx, cy, ax, ay, bx, by),
+        measure_distance_to_segment(dx, dy, ax, ay, bx, by),
     )
 
 
 @allocation_free
-def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+def _turn(a, b, c):
     """Return twice the signed area of a triangle, positive if it is counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -24,7 +24,7 @@ LARGEST_DEGREE = 60
 
 # Binomial coefficients of squares of such polynomials, too.
 _ORDERS = range(2 * LARGEST_DEGREE + 1)
-BINOMIAL = np.array([[math.comb(n, k) for k in _ORDERS] for n in _ORDERS], dtype=float)
+BINOMIAL = np.array([[math.comb(n, k) for k in _ORDERS] for n in _ORDERS], float)
 
 # From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs
 # one stack entry.
@@ -72,11 +72,17 @@ def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int)
 
 
 @allocation_free
+def measure_distance(point: np.ndarray, other: np.ndarray) -> float:
+    """Return the distance of two points (2,)."""
+    return math.hypot(other[0] - point[0], other[1] - point[1])
+
+
+@allocation_free
 def measure_size(points: np.ndarray) -> float:
     """Return the largest distance of a control point from the first one."""
     largest = 0.0
     for i in range(1, len(points)):
-        largest = max(largest, math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]))
+        largest = max(largest, measure_distance(points[0], points[i]))
     return largest
 
 
@@ -98,12 +104,9 @@ def choose_direction(points: np.ndarray) -> tuple[float, float]:
     """
     farthest = len(points) - 1
     longest = measure_size(points)
-    if (
-        math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1])
-        < _SHORT_CHORD * longest
-    ):
+    if measure_distance(points[0], points[-1]) < _SHORT_CHORD * longest:
         for i in range(1, len(points)):
-            if math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]) == longest:
+            if measure_distance(points[0], points[i]) == longest:
                 farthest = i
     x = points[farthest, 0] - points[0, 0]
     y = points[farthest, 1] - points[0, 1]

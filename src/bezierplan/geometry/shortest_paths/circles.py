@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
-from bezierplan.geometry.checker.hulls import measure_distance_to_segment
+from bezierplan.geometry.checker.hulls import measure_distance, measure_distance_to_segment
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
 from bezierplan.kernels import compile_kernel
@@ -181,14 +181,14 @@ def _build_matrix(graph: _Graph) -> "csr_array":
 
 
 @compile_kernel
-def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
+def _is_outer(centres, radii):
     """Tell which circles (n,) do not lie inside another; the first of equal circles does not."""
-    outer = np.ones(len(radii), dtype=np.bool_)
+    outer = np.ones(len(radii), np.bool_)
     for i in range(len(radii)):
         for j in range(len(radii)):
             if i == j or radii[i] > radii[j]:
                 continue
-            distance = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            distance = measure_distance(centres[i], centres[j])
             if distance + radii[i] <= radii[j]:
                 outer[i] &= distance + radii[j] <= radii[i] and i < j
     return outer
@@ -208,9 +208,7 @@ def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
 
 
 @compile_kernel
-def _list_nodes_at(
-    circle: int, distances: np.ndarray, scene: _Scene
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _list_nodes_at(circle, distances, scene):
     """List the ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
 
     distances: (m,) of the circles' centres. A name tells the circle, the other one or the end to
@@ -219,7 +217,7 @@ def _list_nodes_at(
     """
     centres, radii = scene.centres, scene.radii
     count = 0
-    angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), dtype=np.int64)
+    angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), np.int64)
     points = np.empty((4 * len(radii), 2))
     for neighbour in range(len(radii)):
         if neighbour == circle:
@@ -268,10 +266,10 @@ def _list_tangents(nodes: _Nodes, count: int) -> np.ndarray:
 
 
 @compile_kernel
-def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
+def _find_free(begin, end, scene):
     """Tell which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
     left, right, bottom, top = scene.bounds
-    free = np.empty(len(begin), dtype=np.bool_)
+    free = np.empty(len(begin), np.bool_)
     for i in range(len(begin)):
         (ax, ay), (bx, by) = begin[i], end[i]
         free[i] = (
@@ -291,9 +289,7 @@ def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
 
 
 @compile_kernel
-def _measure_gaps(
-    begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene
-) -> np.ndarray:
+def _measure_gaps(begin, end, width, scene):
     """Return how far circles (m,) lie from segments, at most 0 where they meet one.
 
     Segments lead from points (n, 2) to points (n, 2) and reach to both sides by a width (n,).
@@ -312,7 +308,7 @@ def _list_free_arcs(nodes: _Nodes, scene: _Scene) -> tuple[np.ndarray, np.ndarra
     """List free arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2)
     and angles (n,).
     """
-    pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
+    pairs, sweeps = [np.empty((0, 2), np.int64)], [np.empty(0)]
     for circle in np.unique(nodes.circles)[2:].tolist():
         first, end = np.searchsorted(nodes.circles, [circle, circle + 1])
         angles = nodes.angles[first:end] % math.tau

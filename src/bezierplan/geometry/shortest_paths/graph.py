@@ -72,7 +72,7 @@ def dijkstra_path(graph: "csr_array") -> np.ndarray:
 
     distances, predecessors = dijkstra(graph, directed=False, indices=0, return_predecessors=True)
     if math.isinf(distances[1]):
-        return np.empty(0, dtype=np.int64)
+        return np.empty(0, np.int64)
     nodes = [1]
     while nodes[-1] != 0:
         nodes.append(int(predecessors[nodes[-1]]))
@@ -85,4 +85,4 @@ def trace_back(before, length):
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])
-    return np.array(nodes[::-1]) if length < np.inf else np.empty(0, dtype=np.int64)
+    return np.array(nodes[::-1]) if length < np.inf else np.empty(0, np.int64)

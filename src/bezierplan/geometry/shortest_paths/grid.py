@@ -43,7 +43,7 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes = _list_grid_corners(cells)
-    ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
+    ends = from_origin(np.array([problem.start, problem.target], float), blocked)
     scale = _choose_lattice(
         ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape))
     )
@@ -150,13 +150,13 @@ def _is_joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: 
 
 
 @compile_kernel
-def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+def _find_visible_centres(nodes, cells):
     """Tell which pairs i < j of cell centres see each other: bool (n, n).
 
     nodes: (n, 2) integers, two for each cell.
     cells: occupied cells with a ring around them.
     """
-    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
+    visible = np.zeros((len(nodes), len(nodes)), np.bool_)
     for i in range(len(nodes)):
         for j in range(i + 1, len(nodes)):
             same = nodes[i, 0] == nodes[j, 0] and nodes[i, 1] == nodes[j, 1]
@@ -165,7 +165,7 @@ def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 @allocation_free
-def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
+def _is_visible(start, end, cells, scale):
     """Tell whether the segment between two different points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
@@ -176,7 +176,7 @@ def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: in
 
 
 @allocation_free
-def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
+def _is_visible_along_column(x, low, length, cells, scale):
     """Tell whether a vertical segment is free.
 
     On a grid line it runs along edges, which are blocked if both of their cells are occupied.
@@ -190,7 +190,7 @@ def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, s
 
 
 @allocation_free
-def _is_visible_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
+def _is_visible_across(x, y, dx, dy, cells, scale):
     """Tell whether a slanted segment is free: a walk over the cells that it enters.
 
     to_x and to_y are the distances from the segment's start to the next vertical and horizontal

@@ -67,8 +67,8 @@ def _find_least_cells(walls, start, target, steps, diagonal_weight, most_beside)
     # A step of either kind may be replaced by two of the other kind.
     straight, diagonal = min(1.0, diagonal_weight), min(diagonal_weight, 2.0)
     length = np.full(walls.shape, np.inf)
-    came_by = np.full(walls.shape, -1, dtype=np.int8)
-    settled = np.zeros(walls.shape, dtype=np.bool_)
+    came_by = np.full(walls.shape, -1, np.int8)
+    settled = np.zeros(walls.shape, np.bool_)
     length[start[0], start[1]] = 0.0
     # Estimated length, the part of it still ahead, and the cell; ties go to those nearest to the
     # target.
@@ -96,7 +96,7 @@ def _find_least_cells(walls, start, target, steps, diagonal_weight, most_beside)
                 heapq.heappush(heap, (so_far + ahead, ahead, next_row, next_column))
 
     if length[target[0], target[1]] == np.inf:
-        return np.inf, np.empty(0, dtype=np.int64)
+        return np.inf, np.empty(0, np.int64)
     row, column = target[0], target[1]
     cells = [row * columns + column]
     diagonals = 0

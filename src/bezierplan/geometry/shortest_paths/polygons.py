@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry.bins import Bins, columns_between, rows_between
+from bezierplan.geometry.bins import columns_between, list_members, rows_between
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
+from bezierplan.geometry.checker.hulls import measure_distance
 from bezierplan.geometry.region import PolygonRegion
 from bezierplan.geometry.shortest_paths.graph import Bound, follow_nodes, trace_back
 from bezierplan.kernels import allocation_free, compile_kernel
@@ -25,13 +26,11 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
-    return follow_nodes(nodes, _search(nodes, before, after, blocked, blocked.bins))
+    return follow_nodes(nodes, _search(nodes, before, after, blocked))
 
 
 @compile_kernel
-def _search(
-    nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
-) -> np.ndarray:
+def _search(nodes, before, after, region):
     """Run the algorithm A* from node 0 to node 1.
 
     Returns the nodes of a shortest path, empty if there is no path. Pairs are tested only when
@@ -42,7 +41,7 @@ def _search(
         path may turn in any direction.
     """
     came_by = np.full(len(nodes), -1)
-    settled = np.zeros(len(nodes), dtype=np.bool_)
+    settled = np.zeros(len(nodes), np.bool_)
     ahead = np.hypot(nodes[:, 0] - nodes[1, 0], nodes[:, 1] - nodes[1, 1])
     segment = np.empty((1, 2, 2))
     heap = [(ahead[0], 0.0, -1, 0)]
@@ -55,7 +54,7 @@ def _search(
                 segment[0, 0, axis] = nodes[tail, axis]
                 segment[0, 1, axis] = nodes[i, axis]
             if (
-                _is_crossing_any(nodes[tail], nodes[i], region.edges, bins)
+                _is_crossing_any(nodes[tail], nodes[i], region.edges, region.bins)
                 or find_first_collision(segment, region)[0] < math.inf
             ):
                 continue
@@ -71,13 +70,13 @@ def _search(
                 continue
             if turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE:
                 continue
-            so_far = length + math.hypot(nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1])
+            so_far = length + measure_distance(nodes[i], nodes[j])
             heapq.heappush(heap, (so_far + ahead[j], so_far, i, j))
-    return np.empty(0, dtype=np.int64)
+    return np.empty(0, np.int64)
 
 
 @allocation_free
-def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
+def _turn_at(nodes, tail, i, before, after):
     """Return to which side a shortest path turns at corner i, where the obstacle is: to the left
     (1), to the right (-1), or both (0).
     """
@@ -88,7 +87,7 @@ def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np
 
 
 @allocation_free
-def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
+def _is_taut(nodes, i, j, before, after):
     """Tell whether a shortest path can turn at corner i on its way to or from j: the corner lies on
     one side of the line.
     """
@@ -105,7 +104,7 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
 
 
 @allocation_free
-def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
+def _is_crossing_any(a, b, edges, bins):
     """Tell whether a segment crosses an edge strictly; mere touching is left to the certified
     check.
 
@@ -118,8 +117,7 @@ def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins
         low, high = rows_between(a, b, column, bins)
         for step_y in range(high - low + 1):
             row = low + step_y if b[1] >= a[1] else high - step_y
-            place = column * bins.rows + row
-            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+            for e in list_members(column, row, row, bins):
                 beside = (
                     max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
                 )
@@ -132,7 +130,7 @@ def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins
 
 
 @allocation_free
-def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+def _is_crossing(a, b, c, d):
     """Tell whether two segments cross strictly."""
     return _is_apart(_offset(a, b, c), _offset(a, b, d)) and _is_apart(
         _offset(c, d, a), _offset(c, d, b)
@@ -140,18 +138,18 @@ def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> 
 
 
 @allocation_free
-def _is_apart(first: float, second: float) -> bool:
+def _is_apart(first, second):
     """Tell whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 
 
 @allocation_free
-def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
+def _offset(a, b, point):
     """Return the distance of a point from the line through a and b, positive on its left.
 
     It is 0 if a equals b.
     """
-    length = math.hypot(b[0] - a[0], b[1] - a[1])
+    length = measure_distance(a, b)
     if length == 0.0:
         return 0.0
     return ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / length

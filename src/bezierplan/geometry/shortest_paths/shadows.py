@@ -70,10 +70,10 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     at = np.concatenate((ends, scene.corners * scene.scale))
     length = np.full(len(points), np.inf)
     came_by = np.full(len(points), -1)
-    settled = np.zeros(len(points), dtype=np.bool_)
-    view = np.empty(len(scene.corners), dtype=np.int64)
-    fans = np.empty((2, scene.cells.shape[1] + 1, 4), dtype=np.int64)
-    sees_target = np.zeros(len(points), dtype=np.bool_)
+    settled = np.zeros(len(points), np.bool_)
+    view = np.empty(len(scene.corners), np.int64)
+    fans = np.empty((2, scene.cells.shape[1] + 1, 4), np.int64)
+    sees_target = np.zeros(len(points), np.bool_)
     sees_target[0] = direct
     # Sight is mutual: one look around from the target tells which nodes see it.
     for k in range(_look_around(at[1], scene, fans, view)):
@@ -104,11 +104,11 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
                 length[j] = so_far
                 came_by[j] = i
                 heapq.heappush(heap, (so_far + ahead[j], j))
-    return np.empty(0, dtype=np.int64)
+    return np.empty(0, np.int64)
 
 
 @allocation_free
-def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, view: np.ndarray) -> int:
+def _look_around(point, scene, fans, view):
     """Find the corners that a point sees and a shortest path can pass in that direction.
 
     Returns their number, and writes them to `view`.
@@ -123,14 +123,7 @@ def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, view: np.nda
 
 
 @allocation_free
-def _look(
-    point: np.ndarray,
-    came: np.ndarray,
-    corner: int,
-    scene: Scene,
-    fans: np.ndarray,
-    view: np.ndarray,
-) -> int:
+def _look(point, came, corner, scene, fans, view):
     """Look around (`_look_around`) from a corner that a path has come to along a vector.
 
     It goes on in the same quadrant, or it would have been shorter past the corner; and it turns
@@ -154,7 +147,7 @@ def _look(
 
 
 @allocation_free
-def _look_along(x: int, y: int, to: int, scene: Scene, view: np.ndarray) -> int:
+def _look_along(x, y, to, scene, view):
     """Find the corners that a point sees along its horizontal grid line, if it lies on one.
 
     to: to the right (1), to the left (-1), or both (0). An edge ends the view if both of its cells
@@ -242,7 +235,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 
 @allocation_free
-def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
+def _find_first_run_beyond(column, band, scene):
     """Return the first run of a row that ends right of a grid line; the ring's ends each row."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 from bezierplan.planners import Plan
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
@@ -86,9 +86,9 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
-    child = np.empty(longest + max(longest, rules.longest_part), dtype=np.int64)
-    part = np.empty(rules.longest_part, dtype=np.int64)
-    marks = np.zeros(len(lattice.row), dtype=np.int64)
+    child = np.empty(longest + max(longest, rules.longest_part), np.int64)
+    part = np.empty(rules.longest_part, np.int64)
+    marks = np.zeros(len(lattice.row), np.int64)
     lengths = np.empty(population)
     best, best_size, best_length = paths[0].copy(), sizes[0], np.inf
     history = np.empty(generations + 1)
@@ -115,33 +115,19 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
                 if k == 0:
                     continue
                 if rules.shorter_parts:
-                    head = (
-                        father[: k + 1]
-                        if measure_length(father[: k + 1], lattice)
-                        <= measure_length(mother[: m + 1], lattice)
-                        else mother[: m + 1]
-                    )
-                    tail = (
-                        father[k:]
-                        if measure_length(father[k:], lattice)
-                        <= measure_length(mother[m:], lattice)
-                        else mother[m:]
-                    )
+                    head = _choose_shorter(father[: k + 1], mother[: m + 1], lattice)
+                    tail = _choose_shorter(father[k:], mother[m:], lattice)
                     size = put(tail, child, put(head[:-1], child, 0))
                 else:
                     size = put(father[k:], child, put(mother[:m], child, 0))
-                    sizes[i + 1] = _replace(
-                        paths[i + 1], sizes[i + 1], child[:size], rules.shorter_parts, marks
-                    )
+                    _replace(paths, sizes, i + 1, child[:size], rules, marks)
                     size = put(mother[m:], child, put(father[:k], child, 0))
-                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.shorter_parts, marks)
+                _replace(paths, sizes, i, child[:size], rules, marks)
         for i in range(population):
             if rng.random() < rules.mutation_probability:
                 size = _make_mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
                 if size:
-                    sizes[i] = _replace(
-                        paths[i], sizes[i], child[:size], rules.shorter_parts, marks
-                    )
+                    _replace(paths, sizes, i, child[:size], rules, marks)
         if rules.elitism:
             sizes[0] = put(best[:best_size], paths[0], 0)
     return best[:best_size], history
@@ -155,16 +141,18 @@ def put(part, path, size):
     return size + len(part)
 
 
-@allocation_free
-def _replace(path, size, child, cut, marks):
-    """Replace a path by a child if it fits, and return the new size.
+@compile_inline
+def _choose_shorter(one, other, lattice):
+    """Return the shorter of two parts, the first of equal ones."""
+    return one if measure_length(one, lattice) <= measure_length(other, lattice) else other
 
-    cut: if true, the child loses its loops before.
-    """
-    child_size = cut_loops(child, marks) if cut else len(child)
-    if child_size > len(path):
-        return size
-    return put(child[:child_size], path, 0)
+
+@allocation_free
+def _replace(paths, sizes, i, child, rules, marks):
+    """Replace a path, in place, by a child if it fits; by some rules it loses its loops before."""
+    size = cut_loops(child, marks) if rules.shorter_parts else len(child)
+    if size <= paths.shape[1]:
+        sizes[i] = put(child[:size], paths[i], 0)
 
 
 @compile_kernel

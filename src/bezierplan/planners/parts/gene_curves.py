@@ -68,7 +68,7 @@ def prepare_scratch(field: Field) -> Scratch:
         + 4 * (MOST_POINTS + 1)
         + 2 * (_FIRST_PARTS + 1)
     )
-    numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
+    numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), np.int64)
     return Scratch(
         np.empty((MOST_POINTS + 2, 2)),
         np.empty((MOST_POINTS, MOST_POINTS + 2, 2)),
@@ -107,7 +107,10 @@ def validate(
         return least
     count = 0
     for k in range(pieces):
-        count += _write_samples_of_piece(scratch.pieces[k, :size], count, scratch)
+        piece, x, y = scratch.pieces[k, :size], scratch.x[count:], scratch.y[count:]
+        last = count_parts(piece)
+        write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)
+        count += last + 1
     x, y = scratch.x[:count], scratch.y[:count]
     if sight == _UNKNOWN:
         count = write_touched_cells(x, y, scratch.columns, scratch.rows)
@@ -313,12 +316,3 @@ def _write_piece(points, k, piece):
         piece[0, axis] = came + (inner - came) * before / (before + 1)
         piece[1, axis], piece[2, axis] = inner, outer
         piece[3, axis] = goes + (outer - goes) * after / (after + 1)
-
-
-@compile_inline
-def _write_samples_of_piece(piece, place, scratch):
-    """Write x and y of a piece's samples from a place on, and return their number."""
-    x, y = scratch.x[place:], scratch.y[place:]
-    last = count_parts(piece)
-    write_samples(piece, last, 0, 1, last + 1, x, y, scratch.t, scratch.power)
-    return last + 1

@@ -46,7 +46,7 @@ def select(pool: Pool, survivors: int, fill: int) -> None:
     """Move the best of the first `fill` chromosomes to the front, in place; ties in their order."""
     highest = pool.cost[:survivors].max()
     # Some that cost no more are enough, so the others need no sorting.
-    order, count = np.empty(fill, dtype=np.int64), 0
+    order, count = np.empty(fill, np.int64), 0
     for i in range(fill):
         order[count] = i
         count += pool.cost[i] <= highest
@@ -151,17 +151,6 @@ class Kinds(NamedTuple):
     marks: np.ndarray
 
 
-@compile_kernel
-def prepare_kinds(places: int, genes: int) -> Kinds:
-    """Return room for the kinds of a pool of `places` chromosomes of `genes` genes."""
-    return Kinds(
-        np.empty(places, np.int64),
-        np.empty(places),
-        np.empty((places, places)),
-        np.zeros(genes, np.int64),
-    )
-
-
 @allocation_free
 def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> int:
     """Count the chromosomes at the places from `first` on among `count` kinds, and return how many
@@ -221,19 +210,9 @@ def _add_kind(pool, place, kind, kinds):
         kinds.marks[gene] = 0
 
 
-# Entries of a memory of chromosomes.
-_REMEMBERED = 1024
-
-
-@compile_kernel
-def prepare_memory(room: int) -> Pool:
-    """Return a memory for the costs of chromosomes of `room` genes each.
-
-    Newer ones replace older ones.
-    """
-    memory = prepare_pool(_REMEMBERED, room)
-    memory.count[:] = -1
-    return memory
+# Entries of a memory of chromosomes, a pool in which each has a place of its own: a newer one
+# replaces an older one. A power of 2, whose last bits are those of a hash.
+REMEMBERED = 1024
 
 
 @allocation_free
@@ -244,7 +223,7 @@ def find_entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
     for gene in ones:
         mixed = (mixed ^ np.uint64(gene)) * np.uint64(0x9E3779B97F4A7C15)
         mixed ^= mixed >> np.uint64(29)
-    place = np.int64(mixed & np.uint64(_REMEMBERED - 1))
+    place = np.int64(mixed & np.uint64(REMEMBERED - 1))
     return place, memory.count[place] == len(ones) and is_same(
         ones, memory.ones[place, : memory.count[place]]
     )

@@ -59,7 +59,7 @@ def draw_parents(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> n
     Returns their indices (draws,).
     """
     wheel = np.cumsum(fitness)
-    parents = np.empty(draws, dtype=np.int64)
+    parents = np.empty(draws, np.int64)
     for draw in range(draws):
         # A draw close to 1 can round up to the whole wheel.
         parents[draw] = min(
@@ -136,12 +136,6 @@ def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
 
 
 @allocation_free
-def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
-    """Replace, in place, a random gene of a chromosome by a random allele, maybe the old one."""
-    chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[draw_integer(rng, 0, len(alleles))]
-
-
-@allocation_free
 def flip_bit(
     rng: np.random.Generator, chromosome: np.ndarray, gene: int, bits: int, legal: np.ndarray
 ) -> None:
@@ -155,3 +149,24 @@ def flip_bit(
         if legal[chromosome[gene]]:
             return
         chromosome[gene] = before
+
+
+@allocation_free
+def change_gene(
+    rng: np.random.Generator,
+    chromosome: np.ndarray,
+    bits: int,
+    alleles: np.ndarray,
+    legal: np.ndarray,
+    flips: bool,
+) -> None:
+    """Change, in place, a random gene of a chromosome: by `flip_bit`, or to a random allele, maybe
+    the old one.
+    """
+    if flips:
+        flip_bit(rng, chromosome, draw_integer(rng, 0, len(chromosome)), bits, legal)
+    else:
+        # Python draws what stands on the right first: the allele, and then the gene.
+        chromosome[draw_integer(rng, 0, len(chromosome))] = alleles[
+            draw_integer(rng, 0, len(alleles))
+        ]

@@ -51,14 +51,12 @@ def mutate(
         return _mutate_until_feasible(rng, path, alleles, ground)
     if rules.mutation == Mutation.ref21:
         return _mutate_as_reference_21(rng, path, ground, rules, neighbours)
-    k = (
-        _draw_blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
-        if rules.mutation == Mutation.proposed
-        else 0
-    )
-    if k == 0:
-        if rules.mutation == Mutation.proposed and rules.without_obstacle == WithoutObstacle.none:
+    k = 0
+    if rules.mutation == Mutation.proposed:
+        k = _draw_blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
+        if k == 0 and rules.without_obstacle == WithoutObstacle.none:
             return 0
+    if k == 0:
         k = 1 + draw_below(rng, len(path) - 2)
     return _move_to_best_neighbour(path, k, ground, rules, neighbours)
 

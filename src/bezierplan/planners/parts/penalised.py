@@ -17,6 +17,7 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Workspace
 
 if TYPE_CHECKING:
     from shapely import LinearRing
@@ -95,7 +96,10 @@ def compute_fitness(length: float, violation: float, objective: Objective) -> fl
 
 @allocation_free
 def write_curve(particle: np.ndarray, objective: Objective, curve: np.ndarray) -> None:
-    """Write the samples (2, samples) of the curve of a particle (2 n,)."""
+    """Write the samples (2, samples) of the curve of a particle (2 n,).
+
+    objective: of its fields only `ends` and `free` are needed.
+    """
     n, samples = objective.free.shape
     x, y = curve[0], curve[1]
     for s in range(samples):
@@ -153,23 +157,21 @@ def measure_length(curve: np.ndarray, chords: np.ndarray) -> float:
     return (a + b) + (c + d)
 
 
-def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
+def round_obstacles(workspace: Workspace, d_min: float) -> np.ndarray:
     """Return the circles of a workspace, grown by a distance in units: (obstacles, 3), centre and
     radius.
 
-    There are none among polygons.
+    There are none elsewhere.
     """
-    if isinstance(workspace, Polygons):
+    if not isinstance(workspace, Circles):
         return np.empty((0, 3))
     return np.column_stack([workspace.centres, workspace.radii + d_min])
 
 
-def grow_polygons(workspace: Circles | Polygons, d_min: float) -> Polygonal:
-    """Return the polygons of a workspace, grown by a distance in units; none among circles."""
+def grow_polygons(workspace: Workspace, d_min: float) -> Polygonal:
+    """Return the polygons of a workspace, grown by a distance in units; none elsewhere."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
-        return Polygonal(
-            np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0)
-        )
+        return Polygonal(np.empty((0, 4)), np.zeros(1, np.int64), np.empty((0, 4)), np.empty(0))
     import shapely
 
     shapes = [shapely.Polygon(outer, holes).buffer(d_min) for outer, *holes in workspace.obstacles]

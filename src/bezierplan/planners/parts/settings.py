@@ -43,6 +43,10 @@ class Range(NamedTuple):
         return f"from {self.low:g} to {self.high:g}"
 
 
+SHARE, NOT_NEGATIVE = Range(0, 1), Range(0)
+"""Of probabilities and other shares, and of lengths, weights and penalties."""
+
+
 class About(NamedTuple):
     """Meaning of a setting in one line, its place in the paper, and its unit, empty if none."""
 

@@ -35,7 +35,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     Raises ValueError for a centre outside the bounds, or a radius that is too small.
     """
     walls = limits.bounds_of(description["bounds"])
-    table = np.array(description["circles"], dtype=float).reshape(-1, 5)
+    table = np.array(description["circles"], float).reshape(-1, 5)
     centres, radii, velocities = table[:, :2], table[:, 2], table[:, 3:]
     low, high = np.reshape(walls, (2, 2)).T
     if ((centres < low) | (centres > high)).any():
