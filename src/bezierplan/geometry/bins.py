@@ -55,6 +55,7 @@ def _sort(edges, bins):
                 places.append(number)
                 passing.append(e)
     bin_of, members = np.array(places[1:]), np.array(passing[1:])
+    # A stable sort: within a bin edges keep their order, so searches find the same one first.
     order = np.argsort(bin_of, kind="mergesort")
     first = np.searchsorted(bin_of[order], np.arange(bins.columns * bins.rows + 1))
     return first, members[order]

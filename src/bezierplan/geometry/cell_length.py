@@ -27,7 +27,9 @@ DIAGONAL = 1.5
 # rounding would decide, and the two diagonals of a field would differ in length.
 _ON_LINE = 1e-9
 
-# Two grid lines that a segment crosses at parameters this close are crossed at their corner.
+# Two grid lines that a segment crosses at parameters this close are crossed at their corner. This
+# is coarser than `_ON_LINE`, for a parameter is a quotient of differences, each with its own
+# rounding.
 _IN_CORNER = 1e-6
 
 # A Bézier piece of more control points than this is cut into so many.
@@ -60,6 +62,9 @@ def count_parts(points: np.ndarray) -> int:
         longest = max(longest, leg)
     if degree == 1:
         return max(1, math.ceil(2.0 * total))
+    # Two per cent more parts than the bound of the speed asks for: a step of exactly one cell
+    # could skip a cell by rounding. A curve of a few cells gets two more, as its chords are short
+    # beside its bends.
     count = math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
     return count if degree < HIGH else -(-count // QUARTERS) * QUARTERS
 

@@ -205,6 +205,7 @@ def _compute_cost(occupied, target, path, count, point, rules):
     if not is_free_leg(occupied, path[count - 1], point):
         return _UNSEEN
     height = 0.0
+    # Cones are taken at the centre of a point's cell, so all points of a cell are repelled alike.
     cell = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
     for chosen in range(1, count):
         height += max(0.0, rules.reach - _measure_leg(path[chosen], cell))

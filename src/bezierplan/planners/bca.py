@@ -276,6 +276,7 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
     Raises ValueError if no cell is free.
     """
     rows, columns = grid.occupied.shape
+    # As many codes as the shortest bit strings for all cells have; the rest stand for none.
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
     free = np.flatnonzero(legal)
@@ -352,6 +353,7 @@ def _search(rng, codes, cells, curve, rules):
 
         parents, codes = codes, parents
         parent_cost, cost = cost, parent_cost
+        # The paper crosses control points: cuts lie between genes, so the unit is a gene's bits.
         draws = breed(rng, parents, parent_cost, codes, 0, rules.crossover_probability, bits, bits)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)

@@ -191,6 +191,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         moves, cells, occupied, places, measured, convert_to_cells(settings, grid.cell)
     )
     points = grid.in_units(places[best])
+    # Start and target went into cells and back, which can change their last bits.
     points[[0, -1]] = problem.start, problem.target
     path = Path(curve, points)
     rest = drop_repeated_points(points, settings.rejection == Rejection.consecutive)

@@ -415,9 +415,12 @@ def _run_swarm(rng, x, zeta, low, high, limit, objective, rules):
                 _move(rng, r, x[i], v[i], p[i], g[t], own, w, limit, rules)
                 _hold(x[i], v[i], low, high, rules.bound_rule)
         best_infeasible += g_violation > FEASIBLE
+        # The damped inertia is that of the next iteration: the first one moves with `inertia`
+        # itself.
         w *= rules.inertia_damping
         if t > 0:
             best_colliding_samples += g_colliding
+        # A limit of 0 is none.
         if t - improved_at == rules.stall_limit > 0:
             break
     return (

@@ -119,6 +119,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         free=of_free,
         balls=penalised.round_obstacles(world, 0.0),
         polygons=penalised.grow_polygons(world, 0.0),
+        # Of the objective only the measures are used: `_compute_cost` has penalties of its own.
         penalty=int(penalised.Penalty.multiply),
         beta=rules.factor,
     )

@@ -152,6 +152,7 @@ def _search(walks_rng, moves_rng, walls, columns, start, target, rules):
     paths, costs = _draw_first_walks(walks_rng, walker, start, target, rules, walk)
     if len(paths) == 0:
         return np.empty(0, np.int64), np.full(1, np.inf)
+    # In order from the beginning on: the first path is always the cheapest.
     paths, costs = _select_best(paths, costs, population)
     history = np.empty(rules.generations + 1)
     history[0] = costs[0]

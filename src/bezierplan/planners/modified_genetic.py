@@ -302,6 +302,9 @@ def search(
         # much; unless equal chromosomes are told by their costs.
         limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
         fill, extra_batches, alike = size, -1, True
+        # The paper's loop has no other end than a Q below eta, which a pool may never reach,
+        # however many children join it. Each batch takes as long as the first, so `most_batches`
+        # makes a run up to that many times longer.
         while alike and extra_batches < rules.most_batches * loops_on:
             before = fill
             fill, tries, invalid = _add_offspring(

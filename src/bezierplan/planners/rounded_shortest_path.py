@@ -34,7 +34,9 @@ deterministic = True
 # A vertex at which the shortest path turns by less than this, in radians, is not a corner.
 _STRAIGHT = 1e-9
 
-# Radii are this factor to a whole power. It is what an answer can miss the widest turn by.
+# Radii are this factor to a whole power. It is what an answer can miss the widest turn by. The
+# rungs do not depend on the radius that is asked: when circles shrank from that one instead, asking
+# for a larger radius could keep a smaller one.
 _RUNG = 1.02
 
 # A turn without room for this share of the path's length as its radius stays a corner; no turn is
@@ -44,7 +46,8 @@ _TIGHTEST, _WIDEST = 1e-3, 10.0
 # How often the string is pulled tight. The circles move less with each time.
 _PULLS = 12
 
-# How many rungs the search for the widest turn goes down at once, while circles are crowded.
+# How many rungs the search for the widest turn goes down at once, while circles are crowded: a
+# ladder has hundreds, and on most maps the upper ones are crowded or too long.
 _STRIDE = 16
 
 # After so many pulls circles that still overlap will not part.
@@ -501,6 +504,8 @@ def _place(turns, first, last, radius, inward, centre):
             # Circles around the two corners do not meet: no centre has both distances.
             if apart == 0.0 or not abs(one - other) <= apart <= one + other:
                 continue
+            # By the law of cosines, as a share of the way between the corners: how far along it
+            # both circles meet, and how far beside it.
             share = 0.5 * (1.0 + (one * one - other * other) / (apart * apart))
             height = math.sqrt(max(0.0, (one / apart) ** 2 - share * share))
             for sign in (-1.0, 1.0):
@@ -527,6 +532,8 @@ def _separate_circles(turns, first, last, count, reach, side, centres):
                 continue
             across, up = centres[k + 1, 0] - centres[k, 0], centres[k + 1, 1] - centres[k, 1]
             apart, needed = math.hypot(across, up), reach[k] + reach[k + 1]
+            # Twice the share at which the pushes end: after the last one circles are still apart by
+            # more than their radii, so rounding does not let a leg fail.
             missing = (1.0 + 2.0 * _SAME) * needed - apart
             if apart == 0.0 or missing <= 0.0:
                 continue

@@ -20,7 +20,7 @@ from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square
-# of their number.
+# of their number. At this one both tables take 42 MB, and those of the last eight maps are kept.
 TABLE_CELLS = 2048
 
 Neighbourhood = IntEnum("Neighbourhood", "eight four within_two", start=0)

@@ -133,6 +133,7 @@ def _is_free_in_grid(points, region):
         top = _find_element(y_high + reach, cell, rows - 1)
         if reach == 0.0 and not _count_blocked_elements(region.counts, bottom, top, left, right):
             return True
+    # Halves of the hull span fewer elements, so this is no verdict.
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False
     along_x, along_y = choose_direction(points)
@@ -233,6 +234,8 @@ def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
     It is the square root of the smallest Bernstein coefficient of the squared distance. The point
     is subtracted first, so that the error stays relative to the distance.
     """
+    # The squared distance is a polynomial of twice the degree, and no polynomial lies below its
+    # least Bernstein coefficient. Those of a product are sums over all i + j = k.
     n = len(points) - 1
     least = math.inf
     for k in range(2 * n + 1):

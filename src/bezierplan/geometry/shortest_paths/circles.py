@@ -390,6 +390,8 @@ def _circumscribe(
                 middles = math.atan2(from_centre[1], from_centre[0]) + sweep / parts * (
                     np.arange(parts) + 0.5
                 )
+                # Corners of tangents, not points of the arc: chords between those would cut the
+                # circle.
                 reach = radii[circle] / math.cos(0.5 * sweep / parts)
                 polyline.append(
                     centres[circle] + reach * np.column_stack([np.cos(middles), np.sin(middles)])
@@ -398,5 +400,6 @@ def _circumscribe(
         line = np.concatenate(polyline)
         if find_first_collision(np.stack([line[:-1], line[1:]], axis=1), blocked)[0] == math.inf:
             break
+        # Those corners stand out, and may enter a circle that touches this one; finer ones less.
         step *= 0.5
     return line

@@ -42,6 +42,8 @@ def _search(nodes, before, after, region):
     """
     came_by = np.full(len(nodes), -1)
     settled = np.zeros(len(nodes), np.bool_)
+    # The straight distance to the target is never more than what is left, so the first path that
+    # settles the target is a shortest one.
     ahead = np.hypot(nodes[:, 0] - nodes[1, 0], nodes[:, 1] - nodes[1, 1])
     segment = np.empty((1, 2, 2))
     heap = [(ahead[0], 0.0, -1, 0)]

@@ -86,6 +86,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
+    # A crossover writes at most two paths, a mutation a path and a part.
     child = np.empty(longest + max(longest, rules.longest_part), np.int64)
     part = np.empty(rules.longest_part, np.int64)
     marks = np.zeros(len(lattice.row), np.int64)

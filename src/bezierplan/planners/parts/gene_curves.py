@@ -237,6 +237,9 @@ def _is_free_part(x, y, reach, i, away):
 
     A step, which is less than a cell, lies in both.
     """
+    # Around an end of room r, r - 1 cells are free in each direction. A sample is at most
+    # `between` from one end and the other together, and `away` from the chord; the cell that its
+    # step leads to is one further.
     between = max(abs(x[i + 1] - x[i]), abs(y[i + 1] - y[i]))
     return between + 2.0 * away + 1.0 <= reach[i] - 1 + reach[i + 1] - 1
 

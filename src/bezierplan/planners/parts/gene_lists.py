@@ -156,6 +156,8 @@ def count_kinds(pool: Pool, first: int, fill: int, count: int, kinds: Kinds) -> 
     """Count the chromosomes at the places from `first` on among `count` kinds, and return how many
     kinds there are then.
     """
+    # Kinds stand in the order of their first chromosomes, so sums over them have the same bits
+    # whether a pool is counted at once or batch by batch.
     for place in range(first, fill):
         kind = 0
         while kind < count and not _is_kind(pool, place, kinds.head[kind]):
@@ -175,6 +177,7 @@ def compute_mean_q(kinds: Kinds, count: int, fill: int) -> float:
     """
     total = 0.0
     for kind in range(count):
+        # A kind of c copies has c (c - 1) / 2 pairs of its own; c is a factor of all its pairs.
         others = 0.5 * (kinds.copies[kind] - 1.0)
         for other in range(kind):
             others += kinds.copies[other] * kinds.q[kind, other]

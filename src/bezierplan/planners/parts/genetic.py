@@ -148,6 +148,7 @@ def flip_bit(
         complement_bit(chromosome, gene * bits + draw_integer(rng, 0, bits), bits)
         if legal[chromosome[gene]]:
             return
+        # Draw again from the old gene: of a gene changed twice two bits could differ.
         chromosome[gene] = before
 
 

@@ -123,6 +123,7 @@ def write_curve(particle: np.ndarray, objective: Objective, curve: np.ndarray) -
 def bound_length(curve: np.ndarray) -> float:
     """Return no more than the length of a curve (2, samples): the length of four chords."""
     last = curve.shape[1] - 1
+    # A polyline through some of the samples is no longer than that through all of them.
     total = 0.0
     for k in range(4):
         begin, end = k * last // 4, (k + 1) * last // 4
@@ -184,6 +185,7 @@ def grow_polygons(workspace: Workspace, d_min: float) -> Polygonal:
         first=np.concatenate([[0], np.cumsum([len(each) for each in edges])]),
         # In rows, or the kernels are compiled twice.
         boxes=np.array([shape.bounds for shape in shapes]).take([0, 2, 1, 3], axis=1),
+        # GEOS gives that circle as the line from its centre to the nearest point of the edge.
         deepest=np.array([shapely.maximum_inscribed_circle(shape).length for shape in shapes]),
     )
 
@@ -275,6 +277,8 @@ def _measure_among_balls(curve, balls, squares):
             for s in range(samples):
                 # Few samples are inside, so their square roots are taken one by one.
                 if squares[s] < square:
+                    # A square below the radius's own can have a root that rounds to more than the
+                    # radius.
                     depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
             total += depth / samples
             colliding += inside

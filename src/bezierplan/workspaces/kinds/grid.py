@@ -27,6 +27,13 @@ def load(description: dict, folder: Path) -> Grid:
     """Read the cells of a file of . and #, the top row first.
 
     A file of numbers may give their heights, likewise.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "map.txt").write_text("..#\\n...\\n")
+    ...     room = load({"file": "map.txt", "cell": 0.5, "unit": "m"}, Path(folder))
+    >>> room.occupied.tolist(), room.bounds
+    ([[False, False, False], [False, False, True]], (0.0, 1.5, 0.0, 1.0))
     """
     check_thickness(description["cell"], "cell:")
     lines = split_lines(text(description, "file", folder))

@@ -21,7 +21,15 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """Read the pixels of an image as cells, with its lower left corner at 0, 0."""
+    """Read the pixels of an image as cells, with its lower left corner at 0, 0.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "map.pgm").write_text("P2 2 2 255  255 0  255 255")
+    ...     room = load({"file": "map.pgm", "resolution": 0.05, "unit": "m"}, Path(folder))
+    >>> room.occupied.tolist()  # the bottom row first
+    [[False, False], [False, True]]
+    """
     with naming(description["file"]):
         unknown = description.get("unknown", "occupied")
         image = folder / description["file"]

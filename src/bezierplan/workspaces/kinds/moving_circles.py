@@ -33,6 +33,13 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """Build the circles that a description lists.
 
     Raises ValueError for a centre outside the bounds, or a radius that is too small.
+
+    A circle moves by its velocity in each step, and is reflected at the bounds:
+
+    >>> one = {"bounds": [0, 4, 0, 3], "circles": [[3, 1, 0.5, 0.75, 0]], "unit": "m"}
+    >>> moving = world(one | {"pace": 1, "steps": 9}, {}, "", Path(), None)
+    >>> [moving.at(step).tolist() for step in (1, 2)]
+    [[[3.75, 1.0]], [[3.5, 1.0]]]
     """
     walls = limits.bounds_of(description["bounds"])
     table = np.array(description["circles"], float).reshape(-1, 5)

@@ -18,7 +18,18 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Polygons:
-    """Read the border and the obstacles of a GeoJSON file."""
+    """Read the border and the obstacles of a GeoJSON file.
+
+    A file without a border needs a margin:
+
+    >>> from tempfile import TemporaryDirectory
+    >>> shape = '{"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 0]]]}'
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "map.geojson").write_text(shape)
+    ...     room = load({"file": "map.geojson", "margin": 1, "unit": "m"}, Path(folder))
+    >>> room.bounds, room.obstacles[0][0].tolist()
+    ((-1.0, 3.0, -1.0, 2.0), [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]])
+    """
     content = text(description, "file", folder)
     with naming(description["file"]):
         return read_geojson(content, description["unit"], description.get("margin"))

@@ -48,6 +48,14 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     """Draw the first so many circles of a layout.
 
     Raises ValueError for more than it has, for bounds without room, and if no free place is found.
+
+    Layouts with different numbers of circles are nested:
+
+    >>> described = {"bounds": [0, 9, 0, 9], "radius": 1, "circles": 5, "unit": "m"}
+    >>> place = {"start": [0, 0], "target": [9, 9], "layout": 0}
+    >>> few, more = (draw(described, place | {"obstacles": n}, "study/room") for n in (2, 5))
+    >>> len(more.radii), bool((more.centres[:2] == few.centres).all())
+    (5, True)
     """
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     if problem["obstacles"] > description["circles"]:
