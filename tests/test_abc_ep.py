@@ -69,11 +69,16 @@ def test_points_visited_before_repel_out_of_a_dead_end():
 def test_reach_is_a_share_of_the_smaller_side(monkeypatch):
     colonies = []
 
-    def search(colony_rng, evolution_rng, occupied, start, target, rules):
+    def build_first_path(rng, occupied, start, target, rules):
         colonies.append((rules.reach, rules.spread))
-        return np.array([start, target]), np.zeros(1)
+        return np.array([start, target])
 
-    monkeypatch.setattr(abc_ep, "_search", search)
+    def evolve(rng, occupied, path, rules):
+        assert (rules.reach, rules.spread) == colonies[-1]
+        return path, np.zeros(1)
+
+    monkeypatch.setattr(abc_ep, "_build_first_path", build_first_path)
+    monkeypatch.setattr(abc_ep, "_evolve", evolve)
     for rows, columns in ((101, 301), (301, 101), (101, 101)):
         wide = Grid(np.zeros((rows, columns), dtype=bool), 1.0, "cell")
         plan(Problem("test", wide, (0.5, 0.5), (50.5, 50.5)), reach=0.1, spread=0.025)
