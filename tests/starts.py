@@ -26,15 +26,10 @@ from unittest.mock import patch
 # pyarrow, which pandas imports, would start a thread: see `bezierplan.running.jobs.forks`.
 _SERVER = {
     "JE_ARROW_MALLOC_CONF": "background_thread:false",
-    "PYTHONPATH": os.pathsep.join(
-        [*os.environ["PYTHONPATH"].split(os.pathsep), str(Path(__file__).parent)]
-    ),
+    "PYTHONPATH": f"{os.environ['PYTHONPATH']}{os.pathsep}{Path(__file__).parent}",
 }
-# On Linux and macOS; elsewhere each start imports anew, with the same result.
-_METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-_STARTS = multiprocessing.get_context(_METHOD)
-if _METHOD == "forkserver":
-    _STARTS.set_forkserver_preload(["preloaded"])
+_STARTS = multiprocessing.get_context("forkserver")
+_STARTS.set_forkserver_preload(["preloaded"])
 
 
 def python(code: str, folder: Path, *homes: Path, **variables: str) -> str:
