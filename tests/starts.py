@@ -84,6 +84,8 @@ def _execute(words: list[str], how: dict[str, Any]) -> NoReturn:
             os.setsid()
         os.chdir(how["cwd"] or ".")
         resource_tracker._resource_tracker.__init__()  # it has lost the process that it talks to
+        # What this process has read is nothing that the other one has.
+        importlib.import_module("bezierplan.machine.opened").SEEN.clear()
         os.environ.clear()
         os.environ.update(how["env"])
         sys.path[:0] = os.environ["PYTHONPATH"].split(os.pathsep)
@@ -138,7 +140,9 @@ def _run(
     from snakemake.cli import main
 
     os.chdir(folder)
-    if Path("src").exists():  # a copy of the tree takes its own modules
+    workflow, *_ = [*(each for each in map(str, words) if each.endswith("Snakefile")), "Snakefile"]
+    tree = Path(workflow).resolve().parent
+    if tree != Path(__file__).parents[1] and (tree / "src").exists():  # a copy has its own modules
         for name in [name for name in sys.modules if name.partition(".")[0] == "bezierplan"]:
             del sys.modules[name]
     subprocess.Popen = Fork
