@@ -4,6 +4,7 @@ every time.
 
 import gc
 import os
+import subprocess
 import sys
 from collections import Counter
 from functools import partial
@@ -95,6 +96,21 @@ def planners_are_read_here(monkeypatch: pytest.MonkeyPatch) -> None:
         return answers(work, *others)
 
     monkeypatch.setattr(process, "run_function", of_file_here)
+
+
+@pytest.fixture
+def workflows_are_forks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The workflow that `verify` starts is one of `starts.snakemake`."""
+    import starts
+
+    run = subprocess.run
+
+    def start(words: list, **options: object) -> subprocess.CompletedProcess:
+        if words[1:3] != ["-m", "snakemake"]:
+            return run(words, **options)
+        return starts.snakemake(Path.cwd(), *words[3:])
+
+    monkeypatch.setattr(subprocess, "run", start)
 
 
 def pytest_xdist_auto_num_workers() -> int:

@@ -8,8 +8,8 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-from studies import arguments, study
 from studies import drawing as drawn
+from studies import study
 
 from bezierplan.geometry import cell_length
 from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
@@ -20,11 +20,6 @@ from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
-
-
-def given(function):
-    """The arguments that the study gives a function."""
-    return arguments("elhoseny2017", function)
 
 
 def test_expected_lengths_are_those_of_free_and_blocked_diagonals():

@@ -398,28 +398,6 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     )
 
 
-@given(PROBLEMS, st.tuples(LATTICE, LATTICE))
-def test_a_larger_obstacle_makes_no_path_shorter(problem, place):
-    workspace = problem.workspace
-    if isinstance(workspace, Grid):
-        occupied = workspace.occupied.copy()
-        occupied[workspace.cell_of(*place)] = True
-        larger = Grid(occupied, 1.0, "m")
-    elif isinstance(workspace, Circles):
-        larger = Circles(
-            workspace.bounds,
-            np.vstack([workspace.centres, place]),
-            np.append(workspace.radii, 0.75),
-            "m",
-        )
-    else:
-        ring = np.clip(np.add(place, [(-1, -1), (1, -1), (0.5, 1.5)]), 0, SIZE)
-        larger = Polygons(workspace.bounds, (*workspace.obstacles, (ring,)), "m")
-    assert shortest_path(problem._replace(workspace=larger)).length >= shortest_path(
-        problem
-    ).length * (1 - 1e-12)
-
-
 def regular(circle, corners, shape):
     """A regular polygon inside a circle, or around it."""
     x, y, radius = circle

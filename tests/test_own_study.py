@@ -57,12 +57,12 @@ experiments:
     problems: [across]
     methods: [low, high, line, lower]
     repeats: {smoke: 2, full: 30, extended: 60}
-    chunk: {smoke: 2, full: 30, extended: 30}
+    chunk: {smoke: 2, full: 30, extended: 60}
   again:
     problems: [across]
     methods: [low, high]
     repeats: {smoke: 2, full: 30, extended: 60}
-    chunk: {smoke: 2, full: 30, extended: 30}
+    chunk: {smoke: 2, full: 30, extended: 60}
 """
 
 # Some labels are those of columns, of statistics, and of each other.

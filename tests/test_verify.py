@@ -28,6 +28,8 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
+pytestmark = pytest.mark.usefixtures("workflows_are_forks")
+
 BEND = """
 import numpy as np
 from bezierplan.geometry import curves
