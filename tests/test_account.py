@@ -118,7 +118,7 @@ from bezierplan.study import checks
 process.run_function = lambda work, *given: [*work(str)]
 checks.Checks.check = lambda self: []
 recheck.verify = recheck.run_again = lambda *given: recheck.RunsVerdict()
-# A name that is not there would be set without a word, and every question would make all files again.
+# Set where it is not, it would help nothing, and every question would make all files again.
 assert callable(verification.find_differences)
 verification.find_differences = lambda *given: (0, [])
 
