@@ -278,3 +278,28 @@ def test_pages_fit_their_width_and_pass_axe(tab, subtests):
             assert [
                 (each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found
             ] == []
+
+
+def test_a_method_has_one_value_on_each_family_wherever_it_stands(site, papers):
+    shown: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    lines = [line.strip("|\n ").split(" | ") for line in readme.splitlines() if line[:1] == "|"]
+    start = next(i for i, cells in enumerate(lines) if "free paths" in cells)
+    tables = [("", lines[start], lines[start + 2 :])]
+    results = (ROOT / "results/smoke/index.html").read_text(encoding="utf-8")
+    for place in (results, *map(Path.read_text, site.glob("**/*.html"))):
+        for table in BeautifulSoup(place, "html.parser").find_all("table"):
+            head, *rows = ([cell.text.strip() for cell in row(("th", "td"))] for row in table("tr"))
+            if "free paths" in head:
+                section = table.find_parent("section", class_="paper")
+                tables.append((section["id"] if section else "", head, rows))
+    for study, head, rows in tables:
+        for cells in rows:
+            of = dict(zip(head, cells, strict=False))
+            if "scenarios" not in of:
+                continue
+            paper, _, method = f"{of.pop('paper', study)}, {of.pop('method')}".rpartition(", ")
+            key = (paper.strip(", ").replace(" ", "").lower(), method, of.pop("scenarios"))
+            shown.setdefault(key, set()).add(tuple(of.values()))
+    assert len(tables) > len(papers)
+    assert {key: values for key, values in shown.items() if len(values) > 1} == {}
