@@ -34,17 +34,17 @@ IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
     "Medians over the problems; methods with the fewest free paths come first. The rounded "
-    "shortest path turns no tighter than the method's median path without corners. The column "
-    "after it counts the problems in which the method is shorter than that path, or turns more "
-    "gently than it can."
+    "shortest path turns no tighter than the median of the method's paths without corners. The "
+    "next column counts the problems in which the method is shorter than that, or turns more "
+    "gently than any rounded shortest path."
 )
 OPEN = (
-    "No paper prints everything behind its numbers, so a number outside our range refutes nothing "
-    "by itself."
+    "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
+    "that the paper is wrong."
 )
 RANGE = (
-    "Our range holds 95 % of the results of experiments of the paper's size. It is too wide if it "
-    "also holds half of the paper's other numbers of the same kind."
+    "Our range: where 95 % of experiments of the paper's size end when our program makes them. It "
+    "is too wide if at least half of the paper's other numbers of the same kind lie in it too."
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
@@ -234,7 +234,7 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     return (
         "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
         f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios with smooth paths, no "
-        "method of a paper is shorter at equal smoothness, or smoother."
+        "method of a paper is smoother, or shorter at equal smoothness."
     )
 
 

@@ -44,9 +44,9 @@ def test_numbers_and_claims_are_said_in_two_sentences():
             ("two", "inside", 10.0, 10.0, {"counted": False}),
         )
     ) == (
-        "Of 3 printed numbers our range is narrow enough to tell for 2: 1 lie inside it, 1 "
-        "outside. The other 1 would fit almost anything. 1 depend on a map that the "
-        "paper does not print: these prove nothing."
+        "Of 3 printed numbers our range is narrow enough to test 2: 1 lie inside it, 1 outside. "
+        "For the other 1 it is so wide that almost any number would fit. 1 of the 3 depend on a "
+        "map that the paper does not print: inside or outside, these prove nothing."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

@@ -23,12 +23,15 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     inside = int((told["position"] == "inside").sum())
     text = (
         f"Of {naming.format_count(len(numbers), 'printed number')} our range is narrow enough "
-        f"to tell for {len(told)}: {inside} lie inside it, {len(told) - inside} outside."
+        f"to test {len(told)}: {inside} lie inside it, {len(told) - inside} outside."
     )
     if vague := len(numbers) - len(told):
-        text += f" The other {vague} would fit almost anything."
+        text += f" For the other {vague} it is so wide that almost any number would fit."
     if ours := int((numbers["reason"] == comparison.NO_MAP).sum()):
-        text += f" {ours} depend on a map that the paper does not print: these prove nothing."
+        text += (
+            f" {ours} of the {len(numbers)} depend on a map that the paper does not print: inside "
+            "or outside, these prove nothing."
+        )
     return text
 
 
