@@ -85,7 +85,7 @@ def _execute(words: list[str], how: dict[str, Any]) -> NoReturn:
         os.chdir(how["cwd"] or ".")
         resource_tracker._resource_tracker.__init__()  # it has lost the process that it talks to
         # What this process has read is nothing that the other one has.
-        importlib.import_module("bezierplan.machine.opened").SEEN.clear()
+        importlib.import_module("bezierplan.machine.opened_files").SEEN.clear()
         os.environ.clear()
         os.environ.update(how["env"])
         sys.path[:0] = os.environ["PYTHONPATH"].split(os.pathsep)

@@ -9,10 +9,13 @@ from studies import planned, study
 
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import build_region
+from bezierplan.planners import ant_colony
+from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
 DATA = Path(__file__).parent / "data"
+COLONY = study("ma2020").resolve_settings("aco")
 VARIANTS = {
     "aco": ("aco", {}),
     "aco_strong": ("aco_strong", {}),
@@ -26,6 +29,11 @@ VARIANTS = {
     "asfa_ga": ("asfa_ga", {}),
 }
 each_variant = pytest.mark.parametrize("name", VARIANTS)
+
+
+def colony_rules(**changes):
+    """The settings of an ant colony as its search takes them."""
+    return fill_settings(ant_colony.Settings, COLONY | changes)
 
 
 def environment(number):

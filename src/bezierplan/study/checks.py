@@ -59,14 +59,14 @@ class Checks:
     """Check a study whose files are each valid on their own. The methods raise Fault without the
     place, which `at` adds.
 
-    lost: section and name of entries that are left out because they are not valid.
+    omissions: section and name of entries that are left out because they are not valid.
     """
 
-    def __init__(self, study: Study, lost: Iterable[tuple[str, str]] = ()) -> None:
-        lost = {*lost}
-        self.study, self.invalid = study, {name for _, name in lost}
+    def __init__(self, study: Study, omissions: Iterable[tuple[str, str]] = ()) -> None:
+        omissions = {*omissions}
+        self.study, self.invalid = study, {name for _, name in omissions}
         # A method with a fault may have any settings.
-        self.complete = "methods" not in {section for section, _ in lost}
+        self.complete = "methods" not in {section for section, _ in omissions}
         self.faults: dict[str, tuple[str, ...]] = {}
         self.words, self.broken_files = {"generation"}, set()
         self._place = ()

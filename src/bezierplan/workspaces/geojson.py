@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-# How often places in degrees fit between themselves and the origin, at least: a country does so
-# twice; a map in metres mostly begins near the origin.
-_AWAY = 2.0
+# How often places in degrees fit between themselves and the origin, at least: most countries do
+# so; a map in metres mostly begins near the origin.
+_AWAY = 3.0
 
 ROLES = ("border", "obstacle", "start", "target")
 
