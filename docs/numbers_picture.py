@@ -81,11 +81,10 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             _write(axes, -0.03, middle, table.replace("table", "Table "), "right")
             _write(axes, 1.04, middle, f"{inside} of {len(told)}" if len(told) else "–", "left")
             _write(axes, 1.2 if wide else 1.4, middle, f"{off:.2g} %", "left")
+            if wide:
+                _write(axes, 1.34, middle, describe_reasons(own["reason"]), "left")
             if study != last:
                 _write(axes, -0.5 if wide else -0.84, middle, names[study], "left", weight="bold")
-                reasons = numbers.loc[numbers["study"] == study, "reason"].dropna()
-                if wide and len(reasons):
-                    _write(axes, 1.34, middle, reasons.mode()[0], "left")
                 axes.axhline(
                     top,
                     color="0.85",
@@ -116,6 +115,15 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             columnspacing=0.8,
         )
     return figure
+
+
+def describe_reasons(reasons: pd.Series) -> str:
+    """Say why the numbers of a table prove little, and of how many that is so unless of all."""
+    counts = reasons.value_counts()
+    return "\n".join(
+        reason if count == len(reasons) else f"{count} of {len(reasons)}: {reason}"
+        for reason, count in counts.items()
+    )
 
 
 LOOKS = {
