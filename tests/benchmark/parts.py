@@ -145,7 +145,7 @@ def _run(job: Any, study: str, *outputs: str) -> None:
         verified=SMOKE / "verified.json",
     )
     with tempfile.TemporaryDirectory() as folder:
-        files = {name: f"{folder}/{name}" for name in outputs}
+        files = {name: f"{folder}/file.{name}" for name in outputs}  # its ending says the kind
         job.run(given, SimpleNamespace(**files) if files else [f"{folder}/file"])
 
 
