@@ -310,5 +310,5 @@ def test_verify_says_made_by_this_code_exactly_if_no_job_is_to_run(
 @pytest.mark.parametrize("name", HANDS)
 def test_verify_names_a_file_that_was_edited_by_hand(ask, edited, made, name):
     edited(f"results/smoke/{name}", turn)
-    assert ask()[1] == "differs: 1 files; made by this code"
+    assert ask()[1] == "differs: 1 file; made by this code"
     assert f"results/smoke/{name}: " in (made / "said.txt").read_text()

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from bezierplan.analysis import naming
 from bezierplan.analysis.jobs import Job, Recheck, Runs, Verification
 from bezierplan.analysis.outcome import verification
 from bezierplan.commands import count_cores, find_study_path, read_config
@@ -81,13 +82,15 @@ def main(
     ]
     words = ", ".join([*sorted(names - versions.keys()), *moved])
     answer = f"made by other code or libraries ({words})" if words else "made by this code"
+    if left:
+        answer = f"nothing makes {naming.format_count(len(left), 'file')}; the others: {answer}"
     print(
         *wrong.values(),
         *(f"{file}: nothing makes it; delete it" for file in left),
         f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
         f"again; digest {verdict.digest}",
         f"verified with {', '.join(map(' '.join, versions.items()))}",
-        f"differs: {len(wrong)} files; {answer}"
+        f"differs: {naming.format_count(len(wrong), 'file')}; {answer}"
         if wrong
         else f"{answer}: {again.runs} runs and {files} files made again, all equal",
         sep="\n",
