@@ -78,13 +78,19 @@ def _list_titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
 
 
 def _list_methods(study: Study) -> Rows:
-    """Yield each method with its planner and settings."""
+    """Yield each method with what is its own: printed name, planner, policy and settings. The
+    first one of a planner also has the sentence about that.
+    """
+    described = set()
     for name, method in study.methods.items():
-        variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
+        variant = f", a variant of {method.variant_of}" if method.variant_of else ""
+        policy = f"policy {method.policy}" if method.policy else ""
         own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
-        what = filter(None, [_read_sentence(load_planner(planner)).rstrip("."), own])
-        yield name, f"{planner}{variant}: {'; '.join(what)}"
+        sentence = "" if planner in described else _read_sentence(load_planner(planner)).rstrip(".")
+        described.add(planner)
+        parts = filter(None, [f"{planner}{variant}", policy, own, sentence])
+        yield name, f"{study.labels.get(name, name)}: {'; '.join(parts)}"
 
 
 def _list_settings(study: Study) -> Rows:
