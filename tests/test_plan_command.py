@@ -227,6 +227,11 @@ FAULTS = {
         "room.dwg: unknown kind of map; expected a file that ends in .geojson",
     ),
     "planner": ([GAPS, *ENDS, "--method", "pmr"], "--method: pmr: unknown; did you mean prm"),
+    "method of a study": (
+        [GAPS, *ENDS, "--method", "song2016/smoth"],
+        "--method: song2016/smoth: unknown; did you mean song2016/smooth",
+    ),
+    "study": ([GAPS, *ENDS, "--method", "meledje"], "--method: meledje: unknown.*meledje/proposed"),
     "planner of circles": (
         [CELLS, "--start", "0.5,0.5", "--target", "15.5,0.5", "--method", "chaotic_pso"],
         "--method: chaotic_pso: serves workspaces of kind circles, polygons, and the map is grid",

@@ -742,12 +742,15 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
         uses = [use for use, planner in _list_planners().items() if planner == method]
         return find_method(uses[0]) if uses else (method, {})
     key, _, name = method.rpartition("/")
-    if not (
-        key
-        and (_find_folder(key) / "experiments.yaml").is_file()
-        and name in _read_study(key).methods
-    ):
-        known = [*_list_planners(), *list_planners()]
+    # A slip in the name of a method, or a study alone, is answered by the methods of that study.
+    studies = [
+        each
+        for each in (key, method)
+        if each and (_find_folder(each) / "experiments.yaml").is_file()
+    ]
+    known = [f"{study}/{each}" for study in studies for each in _read_study(study).methods]
+    if f"{key}/{name}" not in known:
+        known = known or [*_list_planners(), *list_planners()]
         raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
     return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
