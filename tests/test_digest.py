@@ -217,9 +217,13 @@ def test_a_digest_is_the_same_on_every_python(tmp_path):
     file = tmp_path / "syntax.py"
     file.write_text(WORDS)
     code = ASK.format(modules=(str(file), "bezierplan.running.execution"))
-    names = {f"python3.{minor}" for minor in (11, 12, 13)} - {f"python3.{sys.version_info.minor}"}
+    others = [f"python3.{minor}" for minor in (11, 12, 13) if minor != sys.version_info.minor]
+    # Programs that install several Pythons (pyenv, uv, conda) put them next to each other.
+    beside = [
+        str(file) for name in others for file in Path(sys.base_prefix).parent.glob(f"*/bin/{name}")
+    ]
     found = {}
-    for name in (sys.executable, *filter(shutil.which, sorted(names))):
+    for name in (sys.executable, *filter(shutil.which, others), *beside):
         answer = subprocess.run(
             [name, "-c", code],
             env={

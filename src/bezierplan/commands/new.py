@@ -74,15 +74,14 @@ def main(
 
 def _find_call(folder: Path) -> str:
     """Return the words by which a shell in a folder calls this program once more."""
-    first = sys.argv[0]
-    if own := Path(first).name == "bezierplan":
-        if first == shutil.which("bezierplan"):
-            return "bezierplan"
-    else:
-        first = sys.orig_argv[0]
-    if "/" in first and not folder.samefile(Path()):
-        first = str(Path(first).absolute())  # a relative path leads nowhere from there
-    return shlex.quote(first) + " -m bezierplan" * (not own)
+    program, rest = sys.argv[0], ""
+    if Path(program).name != "bezierplan":
+        program, rest = sys.orig_argv[0], " -m bezierplan"
+    elif program == shutil.which("bezierplan"):
+        return "bezierplan"
+    if "/" in program and not folder.samefile(Path()):
+        program = str(Path(program).absolute())  # a relative path leads nowhere from there
+    return shlex.quote(program) + rest
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:
