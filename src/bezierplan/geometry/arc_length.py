@@ -11,7 +11,7 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
 @allocation_free
-def _compute_speed(differences, t):
+def _compute_speed(differences: np.ndarray, t: float) -> float:
     """Return |B'(t)| of a piece by Horner's rule.
 
     differences: (degree, 2), of its control points.
@@ -35,7 +35,9 @@ def _compute_speed(differences, t):
 
 
 @allocation_free
-def _integrate_speed(differences, low, high, nodes, weights):
+def _integrate_speed(
+    differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray
+) -> float:
     """Integrate the speed between two parameters by Gauss-Legendre quadrature.
 
     nodes, weights: (n,), on -1 to 1.

@@ -43,7 +43,7 @@ def sort_into_bins(edges: np.ndarray) -> Bins:
 
 
 @compile_kernel
-def _sort(edges, bins):
+def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """Return where the members of each bin begin, and the numbers of its edges, ascending."""
     # A first entry tells the compiler the type of the lists; it is dropped below.
     places, passing = [0], [0]

@@ -159,7 +159,7 @@ def write_samples(
 
 
 @allocation_free
-def _find_cell(coordinate, before):
+def _find_cell(coordinate: float, before: int) -> int:
     """Return the column or row of a coordinate; near a grid line, the previous sample's if
     close.
     """
@@ -259,7 +259,7 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
 
 
 @allocation_free
-def _last_cell(first, last):
+def _last_cell(first: float, last: float) -> int:
     """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)

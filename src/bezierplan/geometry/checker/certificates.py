@@ -76,7 +76,7 @@ def bound_depth(points, region):
 
 
 @allocation_free
-def _find_element(x, cell, last):
+def _find_element(x: float, cell: float, last: int) -> int:
     """Return the index in the doubled grid of a coordinate.
 
     It is odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`.
@@ -89,7 +89,7 @@ def _find_element(x, cell, last):
 
 
 @allocation_free
-def _find_sides(index, cell, last):
+def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
     """Return the lowest and highest coordinate of the cells that touch an element: one cell for
     even indices, two for odd ones.
     """
@@ -99,7 +99,9 @@ def _find_sides(index, cell, last):
 
 
 @allocation_free
-def _count_blocked_elements(counts, bottom, top, left, right):
+def _count_blocked_elements(
+    counts: np.ndarray, bottom: int, top: int, left: int, right: int
+) -> int:
     """Count the blocked elements in a range of the doubled grid, both ends inclusive."""
     return (
         counts[top + 1, right + 1]
@@ -173,7 +175,9 @@ def measure_distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins)
 
 
 @allocation_free
-def _bound_distance_to_edges(x, y, other_x, other_y, edges, bins):
+def _bound_distance_to_edges(
+    x: float, y: float, other_x: float, other_y: float, edges: np.ndarray, bins: Bins
+) -> float:
     """Return the least of all edges' larger distance from two points.
 
     Bins are looked at in square rings around the first point. Beyond a ring, edges are at least as
@@ -251,7 +255,7 @@ def bound_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
 
 
 @allocation_free
-def _measure_depth_beyond_border(x, y, bounds):
+def _measure_depth_beyond_border(x: float, y: float, bounds: np.ndarray) -> float:
     """Return how far a point lies beyond the border, 0 within it."""
     left, right, bottom, top = bounds
     return math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
@@ -359,7 +363,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 
 @allocation_free
-def _measure_sides_of_edge(points, edge, normal):
+def _measure_sides_of_edge(points, edge, normal) -> tuple[float, float]:
     """Return the range of distances of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
@@ -413,7 +417,7 @@ def _is_free_in_polygons(points, region):
 
 
 @allocation_free
-def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e):
+def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
     """Tell whether an edge may touch a hull with a bounding box, and a range across its
     direction.
     """
@@ -438,7 +442,7 @@ def _can_touch(points, hull_box, along_x, along_y, across_low, across_high, regi
 
 
 @allocation_free
-def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high):
+def _pass_chain(points, region, contacts, first, along_x, along_y, across_low, across_high) -> int:
     """Return the number of edges of a chain of touched edges if a hull passes it on the free side,
     or 0.
 

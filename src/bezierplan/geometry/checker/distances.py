@@ -122,7 +122,14 @@ def find_least_clearance(
 
 
 @allocation_free
-def _find_edges_within(reach, points, bins, piece, piece_of, edges):
+def _find_edges_within(
+    reach: float,
+    points: np.ndarray,
+    bins: Bins,
+    piece: int,
+    piece_of: np.ndarray,
+    edges: np.ndarray,
+) -> int:
     """Find the edges in the bins within reach of a piece's chord, a few more rather than less.
 
     Their numbers go into `edges`; returns how many there are.
@@ -144,7 +151,14 @@ def _find_edges_within(reach, points, bins, piece, piece_of, edges):
 
 
 @allocation_free
-def _measure_clearance_of_point(x, y, obstacles, edges, centres, radii):
+def _measure_clearance_of_point(
+    x: float,
+    y: float,
+    obstacles: np.ndarray,
+    edges: np.ndarray,
+    centres: np.ndarray,
+    radii: np.ndarray,
+) -> float:
     """Return the least distance of a point to some obstacles, by number: edges, then discs."""
     least = math.inf
     for obstacle in obstacles:
@@ -161,7 +175,14 @@ def _measure_clearance_of_point(x, y, obstacles, edges, centres, radii):
 
 
 @allocation_free
-def _bound_clearance(points, bulge, obstacle, edges, centres, radii):
+def _bound_clearance(
+    points: np.ndarray,
+    bulge: float,
+    obstacle: int,
+    edges: np.ndarray,
+    centres: np.ndarray,
+    radii: np.ndarray,
+) -> float:
     """Return a lower bound of the distance of a curve to an obstacle.
 
     A curve deviates from its chord by at most `bulge`.
@@ -185,7 +206,9 @@ def _bound_clearance(points, bulge, obstacle, edges, centres, radii):
 
 
 @allocation_free
-def _measure_distance_of_segments(a, b, c, d):
+def _measure_distance_of_segments(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray
+) -> float:
     """Return the distance of two segments, 0 if they cross."""
     if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
         return 0.0
@@ -199,6 +222,6 @@ def _measure_distance_of_segments(a, b, c, d):
 
 
 @allocation_free
-def _turn(a, b, c):
+def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
     """Return twice the signed area of a triangle, positive if it is counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

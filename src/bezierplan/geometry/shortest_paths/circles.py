@@ -181,7 +181,7 @@ def _build_matrix(graph: _Graph) -> "csr_array":
 
 
 @compile_kernel
-def _is_outer(centres, radii):
+def _is_outer(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Tell which circles (n,) do not lie inside another; the first of equal circles does not."""
     outer = np.ones(len(radii), np.bool_)
     for i in range(len(radii)):
@@ -208,7 +208,9 @@ def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
 
 
 @compile_kernel
-def _list_nodes_at(circle, distances, scene):
+def _list_nodes_at(
+    circle: int, distances: np.ndarray, scene: _Scene
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """List the ends of all tangents at a circle: angles (n,), names (n,) and points (n, 2).
 
     distances: (m,) of the circles' centres. A name tells the circle, the other one or the end to
@@ -266,7 +268,7 @@ def _list_tangents(nodes: _Nodes, count: int) -> np.ndarray:
 
 
 @compile_kernel
-def _find_free(begin, end, scene):
+def _find_free(begin: np.ndarray, end: np.ndarray, scene: _Scene) -> np.ndarray:
     """Tell which segments, from points (n, 2) to points (n, 2), are free: bool (n,)."""
     left, right, bottom, top = scene.bounds
     free = np.empty(len(begin), np.bool_)
@@ -289,7 +291,9 @@ def _find_free(begin, end, scene):
 
 
 @compile_kernel
-def _measure_gaps(begin, end, width, scene):
+def _measure_gaps(
+    begin: np.ndarray, end: np.ndarray, width: np.ndarray, scene: _Scene
+) -> np.ndarray:
     """Return how far circles (m,) lie from segments, at most 0 where they meet one.
 
     Segments lead from points (n, 2) to points (n, 2) and reach to both sides by a width (n,).

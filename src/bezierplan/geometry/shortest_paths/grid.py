@@ -151,7 +151,7 @@ def _is_joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: 
 
 
 @compile_kernel
-def _find_visible_centres(nodes, cells):
+def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Tell which pairs i < j of cell centres see each other: bool (n, n).
 
     nodes: (n, 2) integers, two for each cell.
@@ -166,7 +166,7 @@ def _find_visible_centres(nodes, cells):
 
 
 @allocation_free
-def _is_visible(start, end, cells, scale):
+def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
     """Tell whether the segment between two different points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
@@ -177,7 +177,7 @@ def _is_visible(start, end, cells, scale):
 
 
 @allocation_free
-def _is_visible_along_column(x, low, length, cells, scale):
+def _is_visible_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
     """Tell whether a vertical segment is free.
 
     On a grid line it runs along edges, which are blocked if both of their cells are occupied.
@@ -191,7 +191,7 @@ def _is_visible_along_column(x, low, length, cells, scale):
 
 
 @allocation_free
-def _is_visible_across(x, y, dx, dy, cells, scale):
+def _is_visible_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
     """Tell whether a slanted segment is free: a walk over the cells that it enters.
 
     to_x and to_y are the distances from the segment's start to the next vertical and horizontal

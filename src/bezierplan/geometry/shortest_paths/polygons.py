@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry.bins import columns_between, list_members, rows_between
+from bezierplan.geometry.bins import Bins, columns_between, list_members, rows_between
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
 from bezierplan.geometry.checker.hulls import measure_distance
 from bezierplan.geometry.region import PolygonRegion
@@ -78,7 +78,7 @@ def _search(nodes, before, after, region):
 
 
 @allocation_free
-def _turn_at(nodes, tail, i, before, after):
+def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
     """Return to which side a shortest path turns at corner i, where the obstacle is: to the left
     (1), to the right (-1), or both (0).
     """
@@ -89,7 +89,7 @@ def _turn_at(nodes, tail, i, before, after):
 
 
 @allocation_free
-def _is_taut(nodes, i, j, before, after):
+def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
     """Tell whether a shortest path can turn at corner i on its way to or from j: the corner lies on
     one side of the line.
     """
@@ -106,7 +106,7 @@ def _is_taut(nodes, i, j, before, after):
 
 
 @allocation_free
-def _is_crossing_any(a, b, edges, bins):
+def _is_crossing_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
     """Tell whether a segment crosses an edge strictly; mere touching is left to the certified
     check.
 
@@ -132,7 +132,7 @@ def _is_crossing_any(a, b, edges, bins):
 
 
 @allocation_free
-def _is_crossing(a, b, c, d):
+def _is_crossing(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
     """Tell whether two segments cross strictly."""
     return _is_apart(_offset(a, b, c), _offset(a, b, d)) and _is_apart(
         _offset(c, d, a), _offset(c, d, b)
@@ -140,13 +140,13 @@ def _is_crossing(a, b, c, d):
 
 
 @allocation_free
-def _is_apart(first, second):
+def _is_apart(first: float, second: float) -> bool:
     """Tell whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 
 
 @allocation_free
-def _offset(a, b, point):
+def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
     """Return the distance of a point from the line through a and b, positive on its left.
 
     It is 0 if a equals b.

@@ -108,7 +108,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
 
 
 @allocation_free
-def _look_around(point, scene, fans, view):
+def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, view: np.ndarray) -> int:
     """Find the corners that a point sees and a shortest path can pass in that direction.
 
     Returns their number, and writes them to `view`.
@@ -123,7 +123,14 @@ def _look_around(point, scene, fans, view):
 
 
 @allocation_free
-def _look(point, came, corner, scene, fans, view):
+def _look(
+    point: np.ndarray,
+    came: np.ndarray,
+    corner: int,
+    scene: Scene,
+    fans: np.ndarray,
+    view: np.ndarray,
+) -> int:
     """Look around (`_look_around`) from a corner that a path has come to along a vector.
 
     It goes on in the same quadrant, or it would have been shorter past the corner; and it turns
@@ -147,7 +154,7 @@ def _look(point, came, corner, scene, fans, view):
 
 
 @allocation_free
-def _look_along(x, y, to, scene, view):
+def _look_along(x: int, y: int, to: int, scene: Scene, view: np.ndarray) -> int:
     """Find the corners that a point sees along its horizontal grid line, if it lies on one.
 
     to: to the right (1), to the left (-1), or both (0). An edge ends the view if both of its cells
@@ -235,7 +242,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 
 @allocation_free
-def _find_first_run_beyond(column, band, scene):
+def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
     """Return the first run of a row that ends right of a grid line; the ring's ends each row."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
