@@ -125,7 +125,9 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
         (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
         (["b"], [("10.51", "14.000", second), ("", "", None)]),
     ]
-    assert content.studies["one"].tables[0]["wholes"] == "", "few runs judge no column as a whole"
+    assert content.studies["one"].tables[0]["order_and_level"] == "", (
+        "few runs judge no column as a whole"
+    )
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
@@ -149,7 +151,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     assert [cell["n_ours"] for cell in own.tables[0]["numbers"]] == [4000] * 3
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.families is None
-    assert own.tables[0]["wholes"] == (
+    assert own.tables[0]["order_and_level"] == (
         f"length, {HOSTILE}: order reversed (rank correlation -0.5; ours 0 to 1)"
     )
     alone = reader.read_study_results(job(), folder, None)["one"]

@@ -144,7 +144,11 @@ def restore_path(curve: str, points: Any) -> Path | None:
 
 
 def judge_path(path: Path | None, blocked: Region) -> dict[str, Any]:
-    """Return the columns of a row that a path alone decides; nan and false without one."""
+    """Return the columns of a row that a path alone decides, without a path nan and false.
+
+    Lengths, depth and clearance are in the unit of the workspace (`columns.Outcome`). Raises
+    ValueError for a path whose control points the checker refuses.
+    """
     length, check = math.nan, NO_PATH
     if path:
         pieces = curves.bezier_pieces(path)

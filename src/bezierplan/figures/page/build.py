@@ -17,11 +17,12 @@ import pandas as pd
 
 from bezierplan.analysis import legend, naming
 from bezierplan.analysis.claims.sentences import describe_metric
+from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.verification import describe_version
 from bezierplan.figures.page import HERE, PICTURES, addresses, charts, overview, reader, runs
-from bezierplan.figures.page.page_job import Labels, PageJob
+from bezierplan.figures.page.page_job import PageJob
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import Files
 

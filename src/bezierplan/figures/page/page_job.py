@@ -5,11 +5,9 @@ studies together.
 from typing import Any, NamedTuple
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.table_kinds import TableEntry
 from bezierplan.figures.caption import Caption
-
-Labels = dict[str, str]
-"""Name -> printed name."""
 
 
 class MethodView(NamedTuple):

@@ -12,11 +12,12 @@ import pandas as pd
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
+from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import FILES, ArtefactView, Labels, PageJob, StudyView
+from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
 
@@ -46,7 +47,7 @@ class Evidence(NamedTuple):
     claims: pd.DataFrame
     methods: pd.DataFrame
     checks: pd.DataFrame
-    wholes: pd.DataFrame
+    order_and_level: pd.DataFrame
 
     def select(self, studies: list[str]) -> "Evidence":
         """Return the evidence about some studies."""
@@ -158,15 +159,21 @@ def _describe_table(
     cells = _list_numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
-    columns = evidence.wholes[evidence.wholes["table"] == name] if evidence else pd.DataFrame()
-    row["wholes"] = _describe_wholes(columns, spec, labels) if len(columns) else ""
+    columns = (
+        evidence.order_and_level[evidence.order_and_level["table"] == name]
+        if evidence
+        else pd.DataFrame()
+    )
+    row["order_and_level"] = (
+        _describe_order_and_level(columns, spec, labels) if len(columns) else ""
+    )
     return row | {
         "numbers": cells,
         "laid": _lay_out_table(folder / f"{row['stem']}.csv", spec, cells),
     }
 
 
-def _describe_wholes(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
+def _describe_order_and_level(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
     """Say how columns of printed means differ from ours, in order or level."""
     told = []
     for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
