@@ -194,6 +194,12 @@ def test_what_ends_the_runs_is_one_fault(case, tmp_path):
             "random numbers",
             "all repeats are equal and count as one, for it draws no number",
         ),
+        (
+            "(evaluations, 2)) + start",
+            "(evaluations, 2)) + problem.workspace.bounds[1]",
+            "paths",
+            "none of 32 paths is free",
+        ),
     ],
 )
 def test_a_planner_is_not_what_it_says(old, new, fact, told, tmp_path):

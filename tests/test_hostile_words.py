@@ -6,6 +6,7 @@ import pytest
 
 from bezierplan.__main__ import main
 from bezierplan.commands import run
+from bezierplan.schema.checked import Fault
 
 NO_STUDY = "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first; "
 WORDS = {
@@ -54,3 +55,5 @@ def test_without_a_word_about_cores_the_workflow_starts(monkeypatch):
         main(["run", "mystudy"])
     assert found.value.code == 3
     assert started == [run.build_command(["mystudy"])]
+    with pytest.raises(Fault, match=r"^no/where: expected the folder of a study"):
+        run.build_command(["results/full/page.html", "--cores", "2", "-n", "a/b", "no/where"])

@@ -44,7 +44,10 @@ def test_faults_are_found_at_once(mine, capsys):
     changed = {
         "artefacts.yaml": ("title: every field", "title: 50"),
         "experiments.yaml": ("function: scattered", "function: scatered"),
-        "claims.yaml": ("name: never_above", "nam: never_above"),
+        "claims.yaml": (
+            "name: never_above, experiment: worst, metric: ratio",
+            "nam: never_above, experiment: worst, metric: rato, replicat: layout",
+        ),
     }
     for name, (old, new) in changed.items():
         file = mine / name
@@ -52,8 +55,10 @@ def test_faults_are_found_at_once(mine, capsys):
     with pytest.raises(SystemExit):
         main(["check-study", "mine"])
     lines = capsys.readouterr().err.splitlines()
-    for name, word in zip(changed, ("quotes", "worlds.py", "unknown key"), strict=True):
+    for name, word in zip(changed, ("quotes", "worlds.py", "nam: unknown key"), strict=True):
         assert sum(f"mine/{name}" in line and word in line for line in lines) == 1, lines
+    # Beside an unknown key the others are checked too.
+    assert all(any(word in line for line in lines) for word in ("nam:", "rato", "replicat:")), lines
     for name, (old, new) in changed.items():
         file = mine / name
         file.write_text(file.read_text().replace(new, old))

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from itertools import pairwise
 
 from bezierplan.commands import find_study_path, is_study
 from bezierplan.places import TREE
@@ -66,6 +67,11 @@ def build_command(words: Sequence[str]) -> list[str]:
             snakemake += [f"--{name}", *([] if value is True else convert_to_list(value))]
     # A word that stands there again is a target: a folder may have the name of one.
     folders = {word: find_study_path(word) for word in words if is_study(word)}
+    for before, word in pairwise(["", *words]):
+        # Neither an option, nor perhaps its value, nor a file of the results.
+        is_target = not before.startswith("-") and not word.startswith(("-", "results/"))
+        if is_target and "/" in word and word not in folders:
+            raise Fault(f"{word}: expected the folder of a study, with a file experiments.yaml")
     others = [*words]
     for word in folders:
         others.remove(word)

@@ -6,6 +6,7 @@ a field is written once and serves three purposes: the message about a wrong val
 config/README.md, and the reader of the class.
 """
 
+import difflib
 import math
 import re
 import textwrap
@@ -48,7 +49,10 @@ class Model(BaseModel):
             )
         for key in content:
             if key not in fields:
-                raise build_error(f"{key}: unknown key{suggest_closest(key, fields)}")
+                text = f"{key}: unknown key{suggest_closest(key, fields)}"
+                raise PydanticCustomError(
+                    "unknown_key", "{text}", {"text": text, "key": key, "keys": [*fields]}
+                )
         for key, field in fields.items():
             if field.is_required() and key not in content:
                 raise build_error(f"{key}: missing key; {field.description}")
@@ -63,7 +67,7 @@ class Model(BaseModel):
         except ValidationError as error:
             faults = error.errors(include_url=False)
             # A fault inside the value has a place and a message of its own.
-            if any(fault["loc"] for fault in faults):
+            if any(fault["loc"] or fault["type"] == "unknown_key" for fault in faults):
                 raise
             raise build_error(
                 _describe_fault(faults[0], cls.model_fields[info.field_name])
@@ -105,12 +109,28 @@ def parse_sound_part(
 ) -> tuple[M, list[str], list[tuple[str, str]]]:
     """Return the sound part of a file's content as a model, the faults of the rest, and section and
     name of the entries that are left out for them. Raises Fault if too little is left.
+
+    An unknown key is taken out, and the rest of its mapping is checked without it.
     """
     try:
         return model.model_validate(content), [], []
     except ValidationError as error:
         fault = describe_fault(error, location)
-        places = {each["loc"][:2] for each in error.errors(include_url=False)}
+        faults = error.errors(include_url=False)
+    if unknown := [each for each in faults if each["type"] == "unknown_key"]:
+        for each in unknown:
+            key = each["ctx"]["key"]
+            value = each["input"].pop(key, None)
+            # A misspelt key that must be there would else be missing, too.
+            meant = difflib.get_close_matches(str(key), each["ctx"]["keys"], n=1)
+            if meant:
+                each["input"].setdefault(meant[0], value)
+        try:
+            sound, others, left = parse_sound_part(model, content, location)
+        except Fault as other:
+            raise Fault(*dict.fromkeys(fault.lines + other.lines)) from None
+        return sound, [*dict.fromkeys(fault.lines + others)], left
+    places = {each["loc"][:2] for each in faults}
     # From the end, so that the numbers of entries in a list stay valid.
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
@@ -182,7 +202,7 @@ def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
     field: its description says what is expected, if it is given.
     """
     context, value = fault.get("ctx", {}), fault["input"]
-    if fault["type"] == "wrong":
+    if fault["type"] in ("wrong", "unknown_key"):
         return context["text"]
     known = re.findall(r"'([^']*)'", context.get("expected", ""))
     if known and isinstance(value, str):

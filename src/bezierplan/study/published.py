@@ -42,6 +42,8 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     if not lines:
         raise Fault(f"{location}: line 1: expected a header of columns, and rows below it")
     header = reader.fieldnames
+    if len(header) == 1 and re.search("[;\t]", header[0]):
+        raise Fault(f"{location}: line 1: expected a comma between two columns")
     if len({*header}) < len(header) or not all(header):
         raise Fault(f"{location}: line 1: {', '.join(header)}: expected names, each once")
     for number, row in lines.items():

@@ -157,6 +157,12 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
         yield ContractFinding(name, "random numbers", not differs, differs)
     if not plans_of:
         return
+    paths = sum(plan.path is not None for plans in plans_of.values() for plan in plans)
+    free = sum(sum(_find_free(plans, by_name[name])) for name, plans in plans_of.items())
+    if paths and not free:
+        # Other units than the map's, or x and y interchanged, show in nothing else.
+        lost = f"none of {paths} paths is free; expected points x, y in the map's units"
+        yield ContractFinding("all problems", "paths", False, lost)
     # A planner of this package runs in this process alone.
     if is_file(planner):
         met = {name: by_name[name] for name in plans_of}
@@ -238,11 +244,7 @@ def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> str:
     """Return how many claims the checker confirms. A planner that declares itself exact claims no
     more, and no path leads to a sealed target.
     """
-    blocked = build_region(problem.workspace)
-    feasible = [
-        plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible
-        for plan in plans
-    ]
+    feasible = _find_free(plans, problem)
     claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]
     detail = f"{len(claims)} paths claimed feasible, {sum(claims)} by the checker"
     if problem.name.endswith(SEALED) and any(feasible):
@@ -250,6 +252,15 @@ def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> str:
     if exact and not all(claims):
         raise answer.Unfit(detail)
     return detail
+
+
+def _find_free(plans: list[Plan], problem: Problem) -> list[bool]:
+    """Return for each plan whether the checker finds a path that is free."""
+    blocked = build_region(problem.workspace)
+    return [
+        plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible
+        for plan in plans
+    ]
 
 
 def _compare_repeats(first: Plan, again: Plan) -> str:
