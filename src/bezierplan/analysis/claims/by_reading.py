@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from bezierplan.analysis.claims import verdicts
+from bezierplan.analysis.claims import sentences, verdicts
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.columns import COLUMNS_OF
 
@@ -82,7 +82,7 @@ def add_dependence(
         if words:
             told_first = f"{claim['verdict']} by default, {', '.join(words)}"
             claims.loc[index, "verdict"] = "depends"
-            claims.loc[index, "reason"] = "; ".join(filter(None, [told_first, claim["reason"]]))
+            claims.loc[index, "reason"] = sentences.join_notes(told_first, claim["reason"])
     return claims
 
 

@@ -157,7 +157,7 @@ def _describe_verdict(
         else sentences.describe_where_it_holds(judgements, material.study.labels),
         "counted": decisive.counted,
         "p_family": decisive.p_family,
-        "reason": "; ".join(filter(None, reasons)),
+        "reason": sentences.join_notes(*reasons),
     }
 
 
@@ -294,7 +294,7 @@ def _write_reason(each: MarkedComparison) -> str:
     """
     unexplained = "too few units to tell" if each.mark == "?" else ""
     note = each.comparison.note if each.comparison else ""
-    return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
+    return sentences.join_notes(each.finding.reason or unexplained, note)
 
 
 def _build_check_row(entry: MarkedComparison, material: Material) -> dict:

@@ -118,6 +118,13 @@ def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: 
     return f"{text[:1].upper()}{text[1:]}."
 
 
+def join_notes(*notes: str) -> str:
+    """Join notes to sentences; the first begins as it stands, and empty ones are left out."""
+    said = [*filter(None, notes)]
+    capital = [*said[:1], *(f"{each[:1].upper()}{each[1:]}" for each in said[1:])]
+    return ". ".join([*(each.rstrip(".") for each in capital[:-1]), *capital[-1:]])
+
+
 def describe_count(claim: Claim | None, verdict: str, count: str | None) -> str:
     """Describe how many comparisons of a claim hold, such as `3 of 16; one suffices`, and how many
     it needs where that is not plain.
