@@ -100,6 +100,7 @@ class Judgement:
     @property
     def gap(self) -> float:
         """How much longer the path is than the exact shortest one, as a share of that."""
+        # Where the start is the target, the shortest path has no length.
         return self.length / self.shortest - 1 if self.shortest else 0.0
 
     def sample(self, n: int | None = None, *, step: float | None = None) -> samples.Samples:
@@ -298,8 +299,10 @@ class Comparison:
         looks = style.choose_line_styles([*self.answers], style.LOOK_OF_PLANNER)
         for number, (label, answered) in enumerate(self.answers.items()):
             own = [each for each in answered if each.problem.name == problem]
+            # Without a path the length is nan, which no order ranks, so a path comes before none.
             best = max(own, key=lambda each: (each.feasible, each.path is not None, -each.length))
             named = {"label": label + " (no free path)" * (not best.feasible), "marker": ""}
+            # The first path brings the map and the exact shortest path for all.
             axes = best.plot(axes, map=not number, **looks[number] | named)
             axes.set_title(problem)
         return axes
@@ -567,6 +570,7 @@ def compare(
     """
     asked = [problem]
     if isinstance(problem, Mapping):
+        # Answers are told apart by the names of their problems, so those must be the keys.
         asked = [each._replace(name=name) for name, each in problem.items()]
     pairs = methods.items() if isinstance(methods, Mapping) else ((None, each) for each in methods)
     answers: dict[str, list[Answer]] = {}
@@ -625,6 +629,7 @@ def _answer(
         runs += [run._replace(seed=run.seed + number) for number in range(again)]
     answered: list[Answer] = []
     try:
+        # An empty name lets the planner run in this process.
         for run, plan, cpu_s in planning.yield_plans(module.plan, runs, planner * is_file(planner)):
             judged = judgement.compute_judgement(
                 run.problem, run.bound, plan.path
@@ -641,6 +646,7 @@ def _answer(
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
+        # Answers come in the order of runs, so the fault is of the first run without one.
         raise ValueError(f"{runs[len(answered)].label}: {fault}") from None
     return answered
 

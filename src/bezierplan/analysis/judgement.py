@@ -131,6 +131,7 @@ def _describe_path(answer: Any, unit: str) -> dict[str, str]:
         words["turning radius"] = f"{radius:.6g} {unit}{less}"
     words["clearance"] = f"{_format_number(answer.clearance, 6)} {unit}"
     if answer.feasible:
+        # A free path may be shorter than the shortest by the checker's tolerance: that is 0 %.
         words["length"] += (
             f", {_format_number(100 * max(answer.gap, 0.0), 3)} % above the shortest path"
         )

@@ -172,6 +172,7 @@ def curvature_jump(path: Path) -> float:
 def list_steps(points: np.ndarray) -> np.ndarray:
     """List the steps (m, 2) between points (n, 2) but for those of length 0."""
     steps = np.diff(points, axis=0)
+    # A step of length 0 has no heading, and the turn there would be lost.
     return steps[np.hypot(*steps.T) > 0]
 
 

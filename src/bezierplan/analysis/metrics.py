@@ -85,6 +85,8 @@ def compute_values(runs: pd.DataFrame, name: str, problems: Problems) -> pd.Seri
 
 def add_columns(names: Iterable[str]) -> None:
     """Add metrics of columns that planners report and that are none yet."""
+    # A name that is not stored has a metric, too (`__missing__`), but checks of names and lists
+    # of them know only those that are stored.
     METRICS.update({name: METRICS[name] for name in names if name not in METRICS})
 
 
@@ -187,4 +189,5 @@ for _percent in (1, 2, 5, 10):
         partial(measures.is_near_shortest, _percent / 100),
     )
 
+# At the end: what is declared later is a study's own, and cannot have these names.
 ALL_STUDIES.update(METRICS)

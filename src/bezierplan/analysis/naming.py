@@ -27,6 +27,7 @@ def format_number(value: float, digits: int = 3) -> str:
     >>> format_number(0.12345), format_number(12345.6, 2)
     ('0.123', '12,000')
     """
+    # Rounded first and then written anew: `.2g` alone makes 1.2e+04 of 12345.6.
     return f"{float(f'{value:.{digits}g}'):,.10g}"
 
 

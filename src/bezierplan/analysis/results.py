@@ -123,6 +123,7 @@ def join_bounds(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.Dat
     # The allowance is for the check below alone.
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
+    # Runs without a path have no length: nan is not below the bound.
     _refuse(runs, runs["length"] < least, "length", "bound")
     # Drives alone have arrivals.
     if "least_arrival" in runs and "arrival" in runs:

@@ -88,6 +88,7 @@ def _add(parser: ArgumentParser, parameter: inspect.Parameter, word: bool, text:
     """
     annotation = Settings if parameter.kind is parameter.VAR_KEYWORD else parameter.annotation
     read = next(each for each in (annotation, *get_args(annotation), str) if each in READS)
+    # argparse reads a percent sign as the beginning of a name to fill in.
     options: dict[str, Any] = {"help": text.replace("%", "%%")}
     if read is bool:
         options["action"] = "store_true"

@@ -102,6 +102,7 @@ def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, lis
 
 def _replace(file: Path, old: str, new: str) -> None:
     """Replace what a regular expression finds in a file."""
+    # A function, because a text would lose its backslashes.
     text = re.sub(old, lambda _: new, file.read_text(encoding="utf-8"), flags=re.MULTILINE)
     file.write_text(text, encoding="utf-8")
 

@@ -69,6 +69,7 @@ def main(
     if out:
         # Before planning, which may take long.
         arguments.check_suffix("out", out, FILES)
+        # A ROS map's image lies beside it, mostly under its name, and must not be lost.
         if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
             raise Fault(f"out: {out}: is there, with the map's name; expected another file")
     if not map.suffix and not map.exists():

@@ -45,6 +45,7 @@ def main(*words: str) -> None:
     workflow = subprocess.Popen(
         build_command(words), stdout=out, stderr=err, process_group=0, preexec_fn=end_with_parent
     )
+    # So Snakemake can end its jobs itself: it would be killed with this process.
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
         sys.exit(workflow.wait())

@@ -59,6 +59,7 @@ def main(
         benchmark.describe_problems(asked).to_csv(problems, index=False)
     stored, made = benchmark.read_stored(experiment), {}
     for candidate in candidates:
+        # A name of its own: a stored method of the paper may be called the same.
         made[f"here:{candidate}"] = (
             _read(Path(candidate), asked)
             if candidate.endswith(".csv")

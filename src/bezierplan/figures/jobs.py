@@ -37,6 +37,7 @@ class Latex(Job):
         from bezierplan.figures import latex
 
         table, *beside = (
+            # As text: the last zero of 1.50 and a cell with the word NA stay.
             pd.read_csv(file, dtype=str, keep_default_na=False)
             for file in [input_files.table, *input_files.beside]
         )

@@ -90,6 +90,7 @@ def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[
 
 def escape_signs(text: str) -> str:
     """Return text in which LaTeX reads no sign as a command."""
+    # All signs at once: one after the other would escape the backslashes of the replacements.
     return text.translate(str.maketrans(_SIGNS))
 
 

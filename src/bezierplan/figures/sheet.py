@@ -97,6 +97,7 @@ def draw(
     with mpl.rc_context(style.SETTINGS):
         # Higher than needed, so that the width limits the panels.
         figure = Figure(figsize=(inches, 2 + 1.4 * inches * rows / columns), layout="compressed")
+        # This canvas remembers how wide texts are; a figure's bare one measures them each time.
         FigureCanvasAgg(figure)
         notes = []
         for number, (letter, panel) in enumerate(zip(letters, panels)):
@@ -127,7 +128,9 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
     """Give a panel its heading and its shape, with texts broken to fit a width in inches."""
     room = width - _BESIDE
     axes.set_title(_break_lines(heading, room))
+    # Panels of a row begin at one height, whatever their shapes.
     axes.set_anchor("N")
+    # A panel in space is a box of three sides, which one ratio cannot shape.
     if axes.name == "3d":
         return
     if axes.get_aspect() == "auto" and axes.get_box_aspect() is None:

@@ -37,6 +37,7 @@ def sort_into_bins(edges: np.ndarray) -> Bins:
     # As many squares of this side as there are edges fill their box.
     side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
     empty = np.zeros(0, np.int64)
+    # One column and one row more: an edge on the upper side of the box lies in the next bin.
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
     first, members = _sort(edges, bins)
     return bins._replace(first=first, members=members)

@@ -154,6 +154,7 @@ def write_samples(
             power[s] = here * t[s]
             x[s] = (x[s] * rest + here * weight_x) * rest + power[s] * next_x
             y[s] = (y[s] * rest + here * weight_y) * rest + power[s] * next_y
+    # Horner's rule can miss the last point by a bit: from degree 11 on binomials carry rounding.
     if first + (count - 1) * stride == last:
         x[count - 1], y[count - 1] = points[degree, 0], points[degree, 1]
 

@@ -115,6 +115,7 @@ def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
 
 def _spline_pieces(points: int) -> np.ndarray:
     """Return the pieces (points - 1, 4, points) of the cubic spline through all points."""
+    # This part of scipy takes long to import, and one kind of curve alone needs it.
     from scipy.interpolate import CubicSpline
 
     # With two or three points these are the line or the parabola through them.

@@ -231,6 +231,7 @@ def _build_grid_region(grid: Grid) -> GridRegion:
     blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
     blocked[1::2, 1::2] = find_occupied_around(cells).all(axis=0)
     horizontal = find_runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
+    # Columns become rows, because runs are found along rows.
     vertical = find_runs(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
     edges = np.ascontiguousarray(
         np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell

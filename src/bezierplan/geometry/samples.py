@@ -15,7 +15,7 @@ from bezierplan.workspaces.problem import Path
 _INTERVALS = 64
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NEWTON_STEPS = 4
-# Samples of a path at most: more are a slip of the step, and would fill the memory.
+# Most samples of a path: more come from a slip in the step, and would fill the memory.
 _MOST = 10_000_000
 
 

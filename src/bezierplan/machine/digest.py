@@ -111,6 +111,7 @@ def _parse_file(file: Path) -> _Syntax:
 def keep_json(content: Any, file: Path) -> None:
     """Write plain values to a file, which is whole whenever it is read."""
     file.parent.mkdir(parents=True, exist_ok=True)
+    # Several processes may write the same file at once: each has a part of its own.
     part = file.with_suffix(f".{os.getpid()}")
     part.write_text(json.dumps(content))
     part.replace(file)
@@ -177,6 +178,7 @@ def _find_imports(module: _Module) -> set[_Module]:
     for level, base, name in _parse_file(file).imports:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
+        # What `from a import b` takes from a may be a module, too: both places are tried.
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
             ours = full.split(".")[0] == ROOT
             # Modules next to this package are not part of it.
@@ -248,6 +250,7 @@ def _find_reached(*modules: str) -> _Reach:
     for module in map(_read_module, modules):
         if _find_file(module) is None:
             raise ValueError(f"no module {module.name} in {module.home}")
+        # To import a module, Python runs the packages that contain it.
         todo += [module, *module.parents()]
     while todo:
         module = todo.pop()
@@ -260,6 +263,7 @@ def _find_reached(*modules: str) -> _Reach:
             todo += _find_imports(module)
             for level, base, _ in syntax.imports:
                 libraries.update(COMPUTING.get(base.split(".")[0], ()) if not level else ())
+    # Sorted, because sets of imports come in another order in each process.
     digest = _compute_digest("\n".join(sorted(texts.values())))
     return _Reach(digest, libraries, [*map(_find_file, texts)])
 

@@ -51,8 +51,8 @@ _DAY = 86_400.0
 # Seconds between two looks at whether another process still compiles, and how long a process waits
 # that holds a lock itself. A kernel calls kernels of modules that its own imports, so locks are
 # taken in one order; but a kernel can also be given any function as an argument, and then two
-# processes could wait for each other: one of them ends that, and compiles a kernel for the second
-# time.
+# processes could wait for each other: one of them then stops waiting, and compiles a kernel for the
+# second time.
 LOOK = 0.05
 PATIENCE = 60.0
 

@@ -52,8 +52,10 @@ def wrap_errors(name: str) -> Iterator[None]:
     except PlannerFailure:
         raise
     except Unfit as fault:
+        # Without its cause: that would show a line of our check, and none of the planner's.
         raise PlannerFailure(f"{name}: its answer: {fault}") from None
     except Exception as error:
+        # With its cause: the log shows the planner's own lines.
         raise PlannerFailure(f"{name}: {describe_in_one_line(error)}") from error
 
 

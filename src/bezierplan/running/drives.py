@@ -66,6 +66,7 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
         last_optimum=_last_optimum(ride, world, problem),
         replans=ride.replans,
         waits=float(ride.waited),
+        # Clearances below 0 exist within circles alone: any other collision counts as one step.
         collision_steps=int((verdict.clearance < -motion_check.TOUCHING).sum())
         if least < 0
         else int(collision),
@@ -88,6 +89,7 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
 def trace_path(ride: Ride) -> Path:
     """Return the path of a drive, without its waits."""
     points = ways.build_way(ride.motion.points).points
+    # A polyline has two points at least, also that of a robot which never moved.
     return Path("polyline", points if len(points) > 1 else np.repeat(points, 2, axis=0))
 
 

@@ -299,6 +299,7 @@ def run_chunk(
     found = [row for row in runs if row["path_curve"]]
     answers = {repr([row[name] for name in (*ANSWER, "condition")]) for row in found}
     drew, wanted = any(row["drew"] for row in runs), len({row["condition"] for row in found})
+    # A few repeats of a planner that draws may be equal by chance; without draws two tell.
     many = len(found) >= wanted * (5 if drew else 2)
     if not deterministic and 0 < wanted == len(answers) and many:
         print(

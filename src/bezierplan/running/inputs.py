@@ -57,4 +57,5 @@ def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
 
 def group_by_table(files: Iterable[str]) -> dict[str, str]:
     """Return table -> its file, of published numbers or of comparisons with them."""
+    # Up to the first point: `table1.comparison.csv` is of table1, too.
     return {Path(file).name.split(".")[0]: file for file in files}

@@ -58,6 +58,7 @@ def split_into_legs(problem: Problem, via: Sequence[Place]) -> list[Problem]:
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
     pairs = list(pairwise([*places, problem.target]))
+    # Without way points a start may be the target: the path then has no length.
     for start, target in pairs if via else ():
         if start == target:
             raise ValueError(f"via: {target}: the same place as the one before; expected another")

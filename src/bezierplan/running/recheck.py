@@ -106,8 +106,8 @@ def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) 
 
 
 def _map(function: Callable[[Any], Any], items: list[Any], processes: int) -> Iterator[Any]:
-    """Apply a function to items in several processes, which on other systems than Linux is one:
-    there they would start the job's script anew.
+    """Apply a function to items in several processes. Other systems than Linux use one, because
+    there each process would start the job's script anew.
     """
     if processes == 1 or sys.platform != "linux":
         yield from map(function, items)
@@ -179,6 +179,7 @@ def judge(task: StoredRuns) -> RunsVerdict:
             continue
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
         kept, digest = table_files.read_digest(table), table_files.compute_digest(table)
+        # From the study's name on: the digest is the same wherever the results lie.
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         # Rows that were changed are not judged: they could hold anything.
         if kept != digest:

@@ -30,6 +30,7 @@ class _Loader(yaml.CSafeLoader):
     """
 
 
+# None of YAML 1.1: it reads song2016's problem 0_15 as the octal number 13.
 _Loader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ("null", r"|null|~", ["", "n", "~"]),
@@ -45,6 +46,7 @@ for _tag, _pattern, _first in (
     _Loader.add_implicit_resolver(
         f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), _first
     )
+# The constructor of YAML 1.1 takes 010 for eight.
 _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.value))
 
 

@@ -20,6 +20,7 @@ from bezierplan.study.experiments import Experiment
 
 DEFAULT = "default"
 
+# All repeats of scale extended take three times the CPU time, and these are enough to decide.
 MOST_REPEATS = 1000
 """Most repeats of a method under a condition when claims are judged under a reading."""
 
@@ -126,6 +127,7 @@ def build_single_alternatives(study: Study) -> dict[str, Study]:
     methods = {method for content in contents for method in content.methods}
     homes = {few.problems[name].workspace for content in contents for name in content.problems}
     return {DEFAULT: few} | {
+        # A slash in a value would put its results one folder deeper, where nobody looks.
         re.sub(r"[^\w.+-]", "_", f"{each.id}_{value}"): apply_values(few, {each.id: value})
         for each in study.assumptions
         if methods.intersection(study.list_governed_methods(each))
@@ -151,6 +153,7 @@ def keep_claims(study: Study, claims: list[Claim]) -> Study:
     checks = [
         check
         for claim in claims
+        # One variant is left, which stands for the first one and for the chosen one.
         for check in apply_variant(claim.checks, *list_variants(claim) * 2)
     ]
     for name in list_experiments(claims):
@@ -215,6 +218,7 @@ def limit_runs(study: Study) -> Study:
         layouts = max((max(each.values()) for each in fields), default=1)
         # One run on each layout remains, even where there are more layouts than runs are wanted.
         most = max(1, FEW // layouts)
+        # `fewer` could ask for more runs than the limit.
         experiments[name] = content.but(
             repeats=_limit(content.repeats, most), chunk=_limit(content.chunk, most), fewer={}
         )

@@ -212,6 +212,7 @@ class Checks:
             if method.planner in self.broken_files:
                 raise Follows
             check_inside(self.study.folder, method.planner, location)
+            # Until it has passed, other methods with this file only follow from its fault.
             self.broken_files.add(method.planner)
         else:
             check_known(method.planner, list_planners(), "planner", f"{method.planner}.py")
@@ -366,6 +367,7 @@ class Checks:
         # One problem for each distinct set of problem settings.
         apart = {
             str(met.get("settings")): (problem, met)
+            # Backwards, so that the first problem with these settings stays, and a fault names it.
             for problem, met in reversed(described.problems.items())
         }
         for condition in described._replace(problems=dict(apart.values())).conditions():

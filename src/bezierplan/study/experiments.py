@@ -192,6 +192,7 @@ class Experiment(Model):
     def runs_of(self, scale: str, factor: str, value: Any) -> int:
         """Return the most repeats that a method, a problem or a varied value has at a scale."""
         most = self.repeats[scale]
+        # Keys of a mapping in YAML are read as text, also those that look like numbers.
         return self.fewer.get(factor, {}).get(str(value), most) if scale == "extended" else most
 
     @property

@@ -318,6 +318,7 @@ def is_shared(study: Study, default: Study, scale: str, experiment: str, method:
     alike = own.items() <= other.items()
     if not method or not alike:
         return alike
+    # The first chunk stands for all: the others differ in repeats, and have no other problems.
     made, known = (build_chunk(each, experiment, method, scale, 0) for each in (study, default))
     return made.settings == known.settings and made.problems.items() <= known.problems.items()
 
@@ -333,6 +334,7 @@ def build_claims(study: Study, scale: str) -> Claims:
             {name: _describe_runs(each) for name, each in (study.tables | study.figures).items()},
             study.variants(),
             {name: experiment.paired for name, experiment in experiments.items()},
+            # Scale full has as many runs as the papers.
             {name: experiment.repeats["full"] for name, experiment in experiments.items()},
             study.labels,
         ),

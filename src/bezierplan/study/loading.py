@@ -165,6 +165,7 @@ def _find_stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
     parts = [
         repr(changes),
         *_describe_package(),
+        # The name of the folder is that of the study, by which its code is found.
         str(folder.resolve()),
         *_describe_contents(folder),
     ]
@@ -264,6 +265,7 @@ def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[s
     ]
     return [
         f"{shorten_path(file)}: no file of a study{suggest_closest(file.name, known)}"
+        # An editor leaves claims.yaml~ behind, but claims.yml is a slip.
         for file in sorted(each for each in folder.glob("*.y*ml*") if each.suffix != ".yaml~")
         if file.name not in (*known, *maps)
     ]
@@ -277,6 +279,7 @@ def check_names(studies: Mapping[str, Study]) -> None:
     for key, study in studies.items():
         location = shorten_path(study.folder)
         check_name(key, f"{location}: {key}")
+        # The same folder may be given by another path, such as a link.
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
             raise Fault(
                 f"{location}: config/studies has a study {key} already, whose results this one "

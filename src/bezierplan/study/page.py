@@ -52,6 +52,7 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
         for part in parts:
             for name, methods in part.items():
                 place = f"{key}/{name}"
+                # Another table or figure may show other methods of the same experiment.
                 behind[place] = behind.get(place, {}) | methods
     return behind
 

@@ -32,6 +32,7 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     Raises Fault, naming file and line, for anything but a table whose header has different names.
     """
     location = shorten_path(file)
+    # Strict: otherwise an open quote takes the rest of the file for one cell, without a word.
     reader = csv.DictReader(io.StringIO(read_text(file, location), newline=""), strict=True)
     lines = {}
     try:
@@ -42,6 +43,7 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     if not lines:
         raise Fault(f"{location}: line 1: expected a header of columns, and rows below it")
     header = reader.fieldnames
+    # Otherwise the message would call columns missing that stand there between other signs.
     if len(header) == 1 and re.search("[;\t]", header[0]):
         raise Fault(f"{location}: line 1: expected a comma between two columns")
     if len({*header}) < len(header) or not all(header):

@@ -137,6 +137,7 @@ def build_verification(
         if own == [PAGE] or not {*own}.isdisjoint(files)
     ]
     words = {
+        # With a slash, because a word without one names a study of this project.
         place: os.path.join(".", shorten_path(study.folder))
         for place, study in places.items()
         if place == study.key

@@ -95,6 +95,7 @@ def _read_content(text: str) -> dict[str, Any]:
     try:
         content = json.loads(text, object_pairs_hook=_read_object)
     except (ValueError, RecursionError) as error:
+        # Brackets within many others end in a RecursionError.
         raise ValueError(f"not GeoJSON ({error})") from None
     if not isinstance(content, dict):
         raise ValueError("not GeoJSON: expected an object with a list of features")

@@ -22,6 +22,7 @@ class Growth(NamedTuple):
 
 def find_growth(workspace: Any) -> Growth | None:
     """Return by how much a map has grown and from which; None for a map as it was given."""
+    # Cells drawn from shapes have not grown themselves: the shapes have.
     shapes = getattr(workspace, "shapes", None)
     return (shapes.growth if shapes else None) or workspace.growth
 

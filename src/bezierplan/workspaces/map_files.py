@@ -53,6 +53,7 @@ def describe(
     if kind == "grid":
         description = {"cell": 1.0} | description
     if kind == "raster":
+        # By this rule, a path over free cells is also free among the polygons.
         description = {"rule": "overlap"} | description
     home = {
         "kind": kind,
@@ -67,6 +68,7 @@ def describe(
         x_low, x_high, y_low, y_high = read(file, home | {"kind": "polygons"} | margin).bounds
         description["cell"] = max(x_high - x_low, y_high - y_low) / CELLS
     try:
+        # The user's own file and unit are left out: limits on their names are those of studies.
         kinds()[kind].model_validate(home | {"unit": "m", "file": "map"} | description)
     except ValidationError as error:
         raise describe_fault(error) from None

@@ -59,6 +59,7 @@ _SAME_POINT = 1e-10
 _STRAIGHT = 1e-9
 
 
+# Remembered, because each further path on the map would wait for it again.
 @lru_cache(maxsize=4)
 def grow(workspace: Workspace, radius: float) -> Workspace:
     """Return the map for the centre of a robot of a radius, in units, with its original as

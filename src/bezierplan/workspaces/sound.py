@@ -16,6 +16,7 @@ def check_map(workspace: Workspace) -> None:
     """Raise ValueError, naming the field, for arrays of the wrong shape, numbers that are none,
     bounds out of order, radii and cells that are too small, and rings that are no simple polygon.
     """
+    # Only the map before its growth comes from a program; the grown one is made here.
     home = original(workspace)
     if isinstance(home, Grid):
         _check_shape(home.occupied, "occupied", (None, None))

@@ -244,9 +244,11 @@ def compute_friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, fl
 
     k = len(ranks)
     chi_square = 12 * n / (k * (k + 1)) * float(((ranks - (k + 1) / 2) ** 2).sum())
+    # Nemenyi's quantile is that of the studentized range, divided by the root of two.
     quantile = float(stats.studentized_range.ppf(1 - LEVEL, k, np.inf)) / math.sqrt(2)
     critical = quantile * math.sqrt(k * (k + 1) / (6 * n))
     p = float(stats.chi2.sf(chi_square, k - 1))
+    # With the same mean ranks, chi-square grows in proportion to the number of units.
     least = math.ceil(n * stats.chi2.isf(LEVEL, k - 1) / chi_square) if chi_square else math.inf
     return float(np.ptp(ranks)), critical, chi_square, p, least
 
@@ -291,6 +293,7 @@ def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         apart, count = float(_measure_from_middle(*wide.to_numpy().T)), len(wide)
         drawn = generator(f"audit/middles/{n:g}").normal(size=(DRAWN, count, int(n)))
         sets = _measure_from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
+        # Only means too near the middle are suspicious: a tail takes true ones away from it.
         p, median = float(np.mean(sets <= apart)), float(np.median(sets))
         rule = f"means of {n:g} lengths lie as far from the middle of their range as normal ones do"
         told = f"{apart:.3g} ranges, normal ones {median:.3g}; p = {p:.2g}"

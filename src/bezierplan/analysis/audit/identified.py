@@ -293,5 +293,6 @@ def _compute_chance(lengths: np.ndarray, printed: float, half: float) -> float:
     count = round(NEARBY / (2 * half))
     numbers = printed + 2 * half * np.arange(-count, count + 1)
     at = np.searchsorted(lengths, numbers)
+    # Infinite ends, so that the least and the largest length have two neighbours as well.
     padded = np.concatenate([[-np.inf], lengths, [np.inf]])
     return float(np.mean(np.minimum(numbers - padded[at], padded[at + 1] - numbers) <= half + 1e-7))

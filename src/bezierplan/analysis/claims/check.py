@@ -69,7 +69,7 @@ FAILURES = (
 # Keys that hold groups: lists of them, and lists of such lists.
 GROUP_KEYS = ("groups", "than", "pairs", "order")
 
-# What the keys of some kinds are in all the others.
+# The values of keys that only some kinds have, in all other kinds.
 _NEUTRAL = dict.fromkeys(
     [*GROUP_KEYS, "statistic", "direction", "together", "paired", "event", "pick", "work"]
 ) | {
@@ -102,6 +102,7 @@ class ClaimCheck(Model):
 
     def __getattr__(self, key: str) -> Any:
         """Return the neutral value of a key that only other kinds have."""
+        # Python asks here only for what the model lacks, so the keys of its own kind come first.
         return _NEUTRAL[key] if key in _NEUTRAL else super().__getattr__(key)
 
     @property

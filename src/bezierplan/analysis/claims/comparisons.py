@@ -84,6 +84,7 @@ def _list_groups(check: OfRuns, claim: Claim, material: Material) -> list:
         else:
             made = [name for name in check.experiments if name in material.results]
             every = [material.results[name].runs[across].dropna() for name in made]
+            # Sorted, because a set of texts has another order in each process.
             groups += sorted(set(itertools.chain(*every)))
     return list(dict.fromkeys(groups))
 

@@ -223,6 +223,7 @@ BETWEEN_GROUPS = Effect(_compute_difference, _compute_gradient, is_on_claimed_si
 
 def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
     """Compute the effect (...) of point values (..., k) of the cells."""
+    # Relative to zero, an effect is not finite: `explain_missing` says so later.
     with np.errstate(divide="ignore", invalid="ignore"):
         return load_kind(check).EFFECT.of(check, points, cells)
 

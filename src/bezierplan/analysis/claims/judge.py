@@ -317,6 +317,7 @@ def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
             "unit": _find_unit(check, material),
             "scale": check.scale,
             "together": len(entry.parts) or None,
+            # JSON knows no numbers of numpy.
             "place": json.dumps(dict(entry.place), default=np.generic.item),
             "conditions": entry.comparison.conditions if entry.comparison else None,
             "counted": entry.counted,

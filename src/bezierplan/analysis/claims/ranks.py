@@ -14,6 +14,7 @@ def compare_ranks(group: np.ndarray, reference: np.ndarray, paired: bool) -> tup
 
     if paired:
         difference = group - reference
+        # scipy's approximation gives no p if all differences are 0.
         if not difference.any():
             return 1.0, 0
         # Pratt: zeros are ranked with the others, and have no sign.
@@ -54,5 +55,7 @@ def compute_a12(group: np.ndarray, others: np.ndarray) -> float:
     """
     from scipy import stats
 
+    # The statistic alone is used. By default scipy takes the exact p of small groups, which for
+    # 8 against 5,000 values needs ten seconds.
     won = stats.mannwhitneyu(group, others, method="asymptotic").statistic
     return float(won / len(group) / len(others))

@@ -115,6 +115,7 @@ def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: 
     names = name_terms(row, check, labels)
     where = f"{names.place}: " if names.place else ""
     text = "; ".join(filter(None, [where + template(row, check, names), *notes]))
+    # Not `capitalize`, which makes all other letters small.
     return f"{text[:1].upper()}{text[1:]}."
 
 

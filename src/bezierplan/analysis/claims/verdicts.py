@@ -64,6 +64,7 @@ def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
     """
     tested = [_give_p(each) for each in findings]
     against = [number for number, each in enumerate(tested) if each.toward < 0]
+    # A finding without p is less sure than one with any p.
     order = {number: 2.0 if math.isnan(each.p) else each.p for number, each in enumerate(tested)}
     if against:
         decisive = min(against, key=order.__getitem__)

@@ -71,6 +71,7 @@ def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path 
     """
     paths = []
     try:
+        # A problem may be called 15, which pandas would read as a number.
         rows = pd.read_csv(file, dtype={"problem": str, "points": str})
     except pd.errors.EmptyDataError:
         raise Fault(f"{file}: is empty; expected columns problem, curve, points") from None

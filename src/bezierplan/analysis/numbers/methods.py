@@ -18,7 +18,8 @@ from bezierplan.workspaces.seeds import generator
 BASELINE = "the exact shortest path with rounded corners"
 """The planner that every method is compared with, in words."""
 
-# Paths whose turns are measured: more take longer than to find them, and move no median.
+# The turns of at most so many paths are measured: more would take longer than to find the paths,
+# and move no median.
 _MEASURED = 100
 
 # A shortest path that is longer than the straight line by less, as a share, is that line.
@@ -82,6 +83,7 @@ def _measure_turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
+    # The path may be of any length: with a limit, the planner would take a smaller radius.
     plan = rounded_shortest_path.plan(problem, draws, turning_radius=radius, excess=math.inf)
     return {
         "curvature": curvature,

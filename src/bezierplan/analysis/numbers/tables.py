@@ -148,6 +148,7 @@ def _compute_cell(
         share_feasible=runs["feasible"].to_numpy()[places].mean(),
         bound=_compute_median(measures.bound[places]),
         gap=_compute_median(measures.gap[places]),
+        # Not `min`, which is nan as soon as one run has no least value.
         least=np.fmin.reduce(measures.least[places]),
         most=metrics.METRICS[entry.metric].most,
         value=0,

@@ -127,6 +127,7 @@ def render_page(page: SimpleNamespace, folder: Path) -> str:
     """
     text = build_environment(page, folder).get_template("page.html.jinja").render(page=page)
     return "".join(
+        # Blanks around line breaks mean nothing elsewhere, and would make the page larger.
         part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
         for part in _AS_WRITTEN.split(text)
     )

@@ -23,6 +23,7 @@ def add_bars(cells: list[Row]) -> None:
         ends = [(cell["low95_predicted"], cell["high95_predicted"]) for cell in column]
         reach = [each for pair in marks + ends for each in pair if each is not None]
         low, high = min(reach), max(reach)
+        # Of equal numbers any width will do that is not 0.
         width = high - low or 1.0
         for cell, (ours, printed), (left, right) in zip(column, marks, ends, strict=True):
             # From 4 to 96, because marks at the ends need room.

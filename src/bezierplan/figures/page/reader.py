@@ -26,6 +26,7 @@ def read(file: str | Path) -> pd.DataFrame:
     """Read a csv file, in which only an empty cell is a missing value."""
     # Digits are a part of a printed number, such as the last zero of 1.50.
     texts = {"as_printed": str}
+    # Each column is read whole: in blocks, pandas may find two types in one.
     return pd.read_csv(file, dtype=texts, keep_default_na=False, na_values=[""], low_memory=False)
 
 
@@ -134,6 +135,7 @@ def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
     """Return a figure with its notes: the runs that it shows, and what can be counted in it."""
     row = _describe_artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
+    # The first line is the caption, which the page has from its job.
     _, runs, *counts = text.split("\n", 2)
     return row | {"runs": runs, "counts": "".join(counts).strip()}
 

@@ -25,8 +25,8 @@ from bezierplan.workspaces import files, worlds
 from bezierplan.workspaces.limits import Bounds
 from bezierplan.workspaces.problem import Problem
 
-# An experiment with more problems than this is shown as a whole only. Failed runs shown of a
-# method.
+# An experiment with more problems than this is shown as a whole only; and so many failed runs of a
+# method are shown.
 MOST_PROBLEMS, MOST_FAILED = 8, 2
 # Points along a path are left out where the path stays within this share of the workspace's longer
 # side. At most so many steps of history.
@@ -206,6 +206,7 @@ def _measure_way(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray
     import shapely
     from shapely.ops import substring
 
+    # shapely knows no line of a single point.
     line = shapely.LineString(path if len(path) > 1 else np.repeat(path, 2, axis=0))
     distances = [0.0]
     for place in shapely.points(trace[1:].astype(float)):
@@ -230,6 +231,7 @@ def _describe_run(row: Row, bounds: Bounds, problem: str) -> Row:
         "claimed": bool(row["claimed_feasible"]),
         "length": _round_finite(row["length"]),
         "clearance": _round_finite(row["clearance"]),
+        # In a drive `collision_at` is a time: `_describe_drive` finds the place.
         "collision": curves.point_at(path, row["collision_at"]).tolist()
         if collides and "steps" not in row
         else None,

@@ -189,6 +189,7 @@ class TablePanel(Panel):
         """Return the rows of the function's table that are shown."""
         from bezierplan.analysis.results import select
 
+        # A copy, because several panels may share the table.
         return select(sources.build_table(self), self.where).copy()
 
 

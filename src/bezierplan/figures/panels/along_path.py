@@ -90,6 +90,7 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
     highest = frame.loc[frame["value"].abs().idxmax()]
     limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])
     cut = magnitude > _HIGHEST_PEAK * limit
+    # A straight path has no curvature, and yet its axis needs two ends.
     top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([magnitude, limit, 1e-3])
     axes.set_ylim(-top, top)
     marker = ("^" if side > 0 else "v") if cut else "o"

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 FEW = 100
 """Runs of each method under each condition, at most."""
 
-# Of a row, of the gap between two assumptions, and of the axes, in inches.
+# Height of a row and of the gap between two assumptions, and width of the axes, in inches.
 _ROW, _GAP, _WIDTH = 0.125, 0.06, 2.7
 
-# Letters of a line of text beside the axes.
+# Most letters in a line of text beside the axes.
 _LETTERS = 50
 
 _LOOKS = {
@@ -36,7 +36,8 @@ _LOOKS = {
     "-": style.mark("X", 4.2, style.RED, label="the opposite holds"),
 }
 
-# Shares in words; an event in some runs needs any.
+# Shares that words stand for; `some` needs any share above 0.
+# `as printed` needs no share by itself: a line at nan is not drawn.
 _SHARES = {"all": 1.0, "some": 0.0, "none": 0.0, "as printed": "nan"}
 
 

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
 
-# Of a panel, as a share of its width.
+# Height of a panel, as a share of its width.
 _HEIGHT = 0.45
 
-# Of the bars at a place, as a share of its room.
+# Width of all bars at a place, as a share of its room.
 _WIDTH = 0.8
 
-# In the place of a bar.
+# This stands in the place of a bar.
 _NO_PATH = "no free path"
 
 

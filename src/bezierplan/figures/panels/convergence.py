@@ -173,6 +173,7 @@ def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the histories with the limits that all runs share."""
+    # An axis needs two ends, also for runs that end with their first generation.
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(naming.name_column("generation", scene.labels))

@@ -147,6 +147,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if of_table:
         return Note()
     ours = frame[frame["part"] == "statistic"]
+    # Only now: the scale of the axis decides how long an interval looks.
     ends = [
         axes.transData.transform(ours[[x, end]].to_numpy())[:, 1] for end in ("low95", "high95")
     ]

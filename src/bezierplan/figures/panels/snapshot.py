@@ -140,6 +140,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         longest = np.hypot(*arrows.T).max()
         reach = _LONGEST_ARROW * np.diff(axes.get_xlim())[0]
         arrows *= min(1.0, reach / longest) if longest > 0 else 1.0
+        # In units of the axes: by default the lengths of arrows are relative to the panel.
         units = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.005}
         axes.quiver(circles["x"], circles["y"], *arrows.T, zorder=2.6, **units)
         axes.plot([], [], label="velocity", **style.mark(r"$\rightarrow$", 8, style.BLACK))

@@ -49,8 +49,8 @@ _RADII, _RANGE = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8), 50
 _LINEAR = 0.01
 _TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
 
-# How far from all others, as a factor, bends at the edges stand; what the axis spans at least; and
-# how far apart its ticks are, as a share of it.
+# Bends at the edges stand apart from all others by this factor; the axis spans at least this
+# factor; and its ticks are at least this share of it apart.
 _EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 0.15
 
 _ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]

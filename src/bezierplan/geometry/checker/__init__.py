@@ -110,6 +110,7 @@ def check(pieces: np.ndarray, region: Region) -> Check:
     >>> parabola.feasible, parabola.clearance
     (True, 0.25)
     """
+    # In rows: for an array of another layout numba compiles each kernel once more.
     pieces = np.ascontiguousarray(pieces, dtype=float)
     refuse_unfit(pieces)
     pieces = from_origin(pieces, region)

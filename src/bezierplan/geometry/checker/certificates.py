@@ -387,6 +387,7 @@ def _is_free_in_polygons(points, region):
     near = np.empty(len(region.edges), np.int64)
     count = 0
     bins = region.bins
+    # So thin a hull meets only edges in the bins along its chord, not in all of its box.
     is_straight = measure_bulge(points) <= _APART
     first, last = columns_between(x_low, x_high, bins)
     begin, end = columns_between(x_low - 2.0 * _APART, x_high + 2.0 * _APART, bins)

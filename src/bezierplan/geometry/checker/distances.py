@@ -40,6 +40,7 @@ def find_largest_depth(pieces: np.ndarray, region: Region, collision_at: float) 
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
+    # A whole number is a joint, and the piece that ends there may be the one that collides.
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
         copy_points(pieces[piece], stack[0])
         finest = choose_resolution(pieces[piece])
@@ -82,6 +83,7 @@ def find_least_clearance(
     least = math.inf
     for piece in range(len(pieces)):
         copy_points(pieces[piece], stack[0])
+        # The ends first: a known distance leaves fewer edges within reach.
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
             least = min(
                 least,

@@ -53,6 +53,7 @@ def shortest_path(problem: Problem) -> Bound:
     """
     blocked = build_region(problem.workspace)
     for point in (problem.start, problem.target):
+        # The check itself judges a path that stays at the point, so both allow the same places.
         if not check(np.array([[point, point]]), blocked).feasible:
             return no_path()
     if isinstance(blocked, GridRegion):

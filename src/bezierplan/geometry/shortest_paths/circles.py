@@ -203,6 +203,7 @@ def _list_nodes(circles: np.ndarray, scene: _Scene) -> _Nodes:
         parts.append(_list_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
     angles, names, points = map(np.concatenate, zip(*parts))
     on_circle = names // (4 * len(scene.radii))
+    # Start and target are named 0 and 1, so the division takes both for circle 0.
     on_circle[1] = 1
     return _Nodes(on_circle, angles, names, points)
 
@@ -376,6 +377,7 @@ def _circumscribe(
     """
     centres, radii = scene.centres, scene.radii
     runs: list[tuple[int, float, int]] = []
+    # The ends of all tangents have cut the arcs; joined again, these need fewer corners.
     for node, sweep in enumerate(sweeps):
         if runs and sweep * runs[-1][1] > 0:
             runs[-1] = (runs[-1][0], runs[-1][1] + sweep, node + 1)

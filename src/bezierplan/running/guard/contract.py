@@ -87,6 +87,7 @@ def check_planner(planner: str, settings: Settings) -> Iterator[ContractFinding]
     module = interface.load_planner_module(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")
     interface.check_settings(module, settings, f"{planner}: settings")
+    # A generator of its own, so that the faults above come before the first finding is asked for.
     return _find_faults(planner, module, settings)
 
 

@@ -133,6 +133,7 @@ def find_interface_fault(module: ModuleType) -> str:
     if not callable(plan) or isinstance(plan, type):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
     try:
+        # A file with `from __future__ import annotations` has texts in place of annotations.
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
         return f"function plan: its annotations cannot be read ({describe_in_one_line(error)})"

@@ -19,6 +19,7 @@ _ARRAY = "Array"
 def pack(value: Any) -> Any:
     """Return a value in a form that text can hold."""
     if isinstance(value, np.ndarray):
+        # As text these numbers keep every bit: JSON has the shortest decimals that restore it.
         return {_ARRAY: value.astype(float).tolist()}
     if isinstance(value, tuple(_KINDS.values())):
         return {type(value).__name__: [*map(pack, value)]}

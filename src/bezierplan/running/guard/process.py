@@ -88,6 +88,7 @@ def run_function(
         # This package first, then what the PYTHONPATH of this environment has.
         python_path = [str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")]
         own = {"PYTHONPATH": os.pathsep.join(filter(None, python_path))}
+        # Into a file: nobody would empty a pipe, and a planner that prints much would stall.
         with printed.open("wb") as output:
             process = subprocess.Popen(
                 [sys.executable, "-m", worker.__name__, job, lines],

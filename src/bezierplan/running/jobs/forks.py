@@ -157,6 +157,7 @@ class Forks:
                 ours.shutdown(socket.SHUT_WR)
             under_way, status, ended = _watch(ours, benchmark)
         if status is not None and not ended:
+            # A script that ends with 1 has told why; of any other end nothing has been told.
             if os.waitstatus_to_exitcode(status) in (0, 1):
                 return status == 0
             ended = describe_end(status)
@@ -203,6 +204,7 @@ def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
                 read = job.recv(1 << 16)
             except TimeoutError:
                 end = f"not done within the time limit of {job.gettimeout():g} s; it is ended"
+                # How it ended is still to come.
                 job.settimeout(None)
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, signal.SIGKILL)
@@ -239,6 +241,7 @@ def serve(control: socket.socket) -> None:
     The modules that the first jobs need are imported before, those of later jobs while none
     arrives.
     """
+    # A terminal sends Ctrl-C to all processes at once; this one ends with its socket.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     jobs: dict[int, socket.socket] = {}
     signal.signal(signal.SIGCHLD, partial(reap, jobs))
@@ -260,6 +263,7 @@ def serve(control: socket.socket) -> None:
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGCHLD])
         child = os.fork()
         if child == 0:
+            # A copy here would keep the sockets of other jobs open after these have ended.
             for other in (control, *jobs.values()):
                 other.close()
             run(parent)
@@ -289,6 +293,7 @@ def run(parent: socket.socket) -> None:
     """Run, in a child, the script that a socket brings, and end the process. An exception ends it
     as it would end an interpreter.
     """
+    # The process that forks has handlers of its own; a script needs those of any process.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGCHLD])
@@ -310,11 +315,13 @@ def run(parent: socket.socket) -> None:
     logging.shutdown()
     sys.stdout.flush()
     sys.stderr.flush()
+    # Not `sys.exit`, which would go on in code and exit handlers of the process that forks.
     os._exit(0)
 
 
 if __name__ == "__main__":
     end_with_parent()
     with socket.socket(fileno=os.dup(0)) as control, open(os.devnull, "rb") as nothing:
+        # A script that reads its input would otherwise take the sockets of other jobs.
         os.dup2(nothing.fileno(), 0)
         serve(control)

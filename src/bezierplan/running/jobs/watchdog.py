@@ -13,6 +13,7 @@ PR_SET_CHILD_SUBREAPER = 36
 
 UNDER_WAY = logging.getLogger("bezierplan.under_way")
 """Gets the time limit and the name of each run that a job begins; `forks` listens."""
+# Otherwise the log of a job would have a line for each run.
 UNDER_WAY.propagate = False
 UNDER_WAY.setLevel(logging.INFO)
 

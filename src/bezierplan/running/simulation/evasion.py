@@ -20,9 +20,9 @@ def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Poli
     """Return the best place (2,), in units, for the robot at the end of a step: where it stands,
     unless a circle is about to come there.
 
-    It knows what its policy lets it see. A step in which it meets no circle is better than one in
-    which it does; of two such steps, the better one begins the drive on which it takes longer until
-    a circle comes nearer than `check_margin`; then the one that ends farther from all circles.
+    The robot knows what its policy lets it see. A step that meets no circle is better than one that
+    meets one. Of two such steps, the better one begins the drive on which no circle comes nearer
+    than `check_margin` for longer; of two equal ones, it ends farther from all circles.
 
     step: the number of the one that begins.
     """

@@ -152,6 +152,7 @@ def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
         effect_size_name=size_name,
         effect_size=size,
         p=p,
+        # Without an effect this is nan, which `int` refuses.
         toward=int(np.nan_to_num(toward)),
         negligible=negligible,
         reason=reason,
