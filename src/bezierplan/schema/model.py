@@ -112,24 +112,25 @@ def parse_sound_part(
 
     An unknown key is taken out, and the rest of its mapping is checked without it.
     """
-    try:
-        return model.model_validate(content), [], []
-    except ValidationError as error:
-        fault = describe_fault(error, location)
-        faults = error.errors(include_url=False)
-    if unknown := [each for each in faults if each["type"] == "unknown_key"]:
+    lines: dict[str, None] = {}
+    while True:
+        try:
+            return model.model_validate(content), [*lines], []
+        except ValidationError as error:
+            faults = error.errors(include_url=False)
+            told = describe_fault(error, location).lines
+        unknown = [each for each in faults if each["type"] == "unknown_key"]
+        # Options that panels share are copied before they are checked, so their keys stay.
+        if not unknown or lines.keys() >= {*told}:
+            break
+        lines |= dict.fromkeys(told)
         for each in unknown:
             key = each["ctx"]["key"]
             value = each["input"].pop(key, None)
             # A misspelt key that must be there would else be missing, too.
-            meant = difflib.get_close_matches(str(key), each["ctx"]["keys"], n=1)
-            if meant:
-                each["input"].setdefault(meant[0], value)
-        try:
-            sound, others, left = parse_sound_part(model, content, location)
-        except Fault as other:
-            raise Fault(*dict.fromkeys(fault.lines + other.lines)) from None
-        return sound, [*dict.fromkeys(fault.lines + others)], left
+            for meant in difflib.get_close_matches(str(key), each["ctx"]["keys"], n=1):
+                each["input"].setdefault(meant, value)
+    lines |= dict.fromkeys(told)
     places = {each["loc"][:2] for each in faults}
     # From the end, so that the numbers of entries in a list stay valid.
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
@@ -137,11 +138,11 @@ def parse_sound_part(
     try:
         return (
             model.model_validate(content),
-            fault.lines,
+            [*lines],
             [(str(each[0]), str(each[-1])) for each in places],
         )
     except ValidationError:
-        raise fault from None
+        raise Fault(*lines) from None
 
 
 def describe_fault(error: ValidationError, *location: str) -> Fault:

@@ -9,7 +9,7 @@ import numpy as np
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
 from bezierplan.geometry.checker.hulls import measure_distance, measure_distance_to_segment
 from bezierplan.geometry.region import CircleRegion
-from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
+from bezierplan.geometry.shortest_paths.graph import Bound, build_matrix, dijkstra_path, no_path
 from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces.problem import Problem
 
@@ -172,12 +172,7 @@ def _find_ties(graph: _Graph) -> tuple[float, np.ndarray]:
 
 def _build_matrix(graph: _Graph) -> "csr_array":
     """Return the lengths of edges by their ends, as a sparse matrix."""
-    from scipy.sparse import coo_array
-
-    count = len(graph.nodes.names)
-    lengths = np.maximum(graph.lengths, NO_LENGTH)
-    ends = graph.ends.T.astype(np.int32)  # older versions of scipy take no wider ones
-    return coo_array((lengths, tuple(ends)), shape=(count, count)).tocsr()
+    return build_matrix(graph.lengths, graph.ends.T, len(graph.nodes.names))
 
 
 @compile_kernel

@@ -55,12 +55,20 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
     visible: bool (n, n), which pairs i < j of points see each other.
     """
+    ends = np.array(np.nonzero(visible))
+    tail, head = ends
+    lengths = np.hypot(*(points[head] - points[tail]).T)
+    return follow_nodes(points, dijkstra_path(build_matrix(lengths, ends, len(points))))
+
+
+def build_matrix(lengths: np.ndarray, ends: np.ndarray, count: int) -> "csr_array":
+    """Return the lengths (e,) of edges by their ends (2, e), some of `count` nodes, as a sparse
+    matrix.
+    """
     from scipy.sparse import coo_array
 
-    tail, head = np.nonzero(visible)
-    lengths = np.hypot(*(points[head] - points[tail]).T)
-    graph = coo_array((np.maximum(lengths, NO_LENGTH), (tail, head)), shape=visible.shape).tocsr()
-    return follow_nodes(points, dijkstra_path(graph))
+    ends = ends.astype(np.int32)  # older versions of scipy take no wider ones
+    return coo_array((np.maximum(lengths, NO_LENGTH), tuple(ends)), shape=(count, count)).tocsr()
 
 
 def dijkstra_path(graph: "csr_array") -> np.ndarray:
