@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
-from page_content import HOSTILE, SVG, job, page
+from page_content import SVG, job, page
 
 from bezierplan.figures.page import addresses, build, charts, overview, reader, runs
 from bezierplan.figures.page.page_job import ExperimentView
@@ -152,7 +152,7 @@ def test_evidence_of_many_runs_stands_in_place_of_the_verdicts_of_a_mirror(conte
     assert {claim["verdict"] for claim in own.claims} == {"partly"}
     assert own.families is None
     assert own.tables[0]["order_and_level"] == (
-        f"length, {HOSTILE}: order reversed (rank correlation -0.5; ours 0 to 1)"
+        "length: the methods' order is reversed (rank correlation -0.5; ours 0 to 1)"
     )
     alone = reader.read_study_results(job(), folder, None)["one"]
     assert {claim["verdict"] for claim in alone.claims} > {"supported"}

@@ -2,7 +2,6 @@
 cells are None. Columns keep their names, and functions say which keys they add to a row.
 """
 
-import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -178,19 +177,27 @@ def _describe_table(
 def _describe_order_and_level(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
     """Say how columns of printed means differ from ours, in order or level."""
     told = []
-    for row in list_rows(columns[columns["position"].isin(["below", "above"])]):
-        head = [_format_heading(row["metric"], "mean", spec, labels)]
-        for key, value in json.loads(row["place"]).items():
-            if value != spec.primary.get(key):
-                head.append(naming.format_value(value, key, labels))
-        low, high = (f"{row[end]:.2g}" for end in ("low95_predicted", "high95_predicted"))
-        if row["quantity"] == "level":
-            what = f"level {row['position']} ours ({row['printed']:.3g}; ours {low} to {high})"
-        else:
-            word = "reversed" if row["printed"] < 0 else "another one"
-            what = f"order {word} (rank correlation {row['printed']:.2g}; ours {low} to {high})"
-        told.append(f"{', '.join(head)}: {what}")
-    return "; ".join(told)
+    for (metric, quantity), own in columns.groupby(["metric", "quantity"], sort=False):
+        outside = own[own["position"].isin(["below", "above"])]
+        for position, rows in outside.groupby("position", sort=False):
+            where = _format_heading(metric, "mean", spec, labels)
+            if len(own) > 1:
+                where += f", {len(rows)} of {len(own)} columns"
+            printed = _format_range(rows["printed"], rows["printed"])
+            ours = _format_range(rows["low95_predicted"], rows["high95_predicted"])
+            if quantity == "level":
+                what = f"the printed level, {printed}, lies {position} ours, {ours}"
+            else:
+                word = "is reversed" if (rows["printed"] < 0).all() else "differs from ours"
+                what = f"the methods' order {word} (rank correlation {printed}; ours {ours})"
+            told.append(f"{where}: {what}")
+    return ". ".join(told)
+
+
+def _format_range(low: pd.Series, high: pd.Series) -> str:
+    """Format the range between the least and the largest of some numbers."""
+    ends = naming.format_number(low.min()), naming.format_number(high.max())
+    return " to ".join(dict.fromkeys(ends))
 
 
 def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
