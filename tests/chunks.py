@@ -21,7 +21,6 @@ CHUNK = Chunk(
     settings={},
     problems={name: {"workspace": "field"} for name in MADE},
     vary={},
-    presets={},
     seeds="own",
     repeats=[0, 2],
 )

@@ -22,7 +22,6 @@ CHUNK = BENDS._replace(
     planner="chaotic_pso",
     settings={"inertia": 1.0},
     vary={"profile": ["a"]},
-    presets={"profile": {"a": {}}},
 )
 CONDITION = Condition("disc", {"profile": "a"})
 

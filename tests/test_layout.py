@@ -212,7 +212,6 @@ def facts(own, experiment, where):
                 settings.pop(factor, None)
                 for value in filter(lambda value: selected(factor, value), values):
                     yield factor, value
-                    settings |= own.presets.get(factor, {}).get(str(value).lower(), {})
             yield from settings.items()
     yield "runs", content.repeats["full"] * len(layouts)
 

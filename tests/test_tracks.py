@@ -42,7 +42,6 @@ CHUNK = Chunk(
     settings=SETTINGS | {"chaotic_term": "none", "iterations": 20},
     problems={"field": {"workspace": "field"}},
     vary={"inertia": [1.0, 0.7]},
-    presets={},
     seeds="common",
     repeats=[0, 6],
 )

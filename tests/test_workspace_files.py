@@ -374,19 +374,6 @@ def test_layouts_leave_the_ends_free():
         assert min(np.hypot(*(centres - end).T).min() for end in [(0, 0), (4, 6)]) > 2.0
 
 
-def test_circles_of_a_corridor_lie_along_the_straight_line():
-    """None is farther from it than the half-width, or before the start, or beyond the target."""
-    corridor, ends = RANDOM | {"radius": 0.5, "corridor": 0.4}, [(0, 0), (4, 6)]
-    way = np.array(ends[1]) / np.hypot(*ends[1])
-    layouts = [random_circles.layout(corridor, "study/way", number, ends) for number in range(100)]
-    centres = np.concatenate([each.centres for each in layouts])
-    along, across = centres @ way, centres @ [-way[1], way[0]]
-    assert abs(across).max() == pytest.approx(0.4, abs=0.01)
-    assert abs(across.mean()) < 0.05
-    # At the very side of the corridor, a circle may come as near to an end as 0.3 along it.
-    assert (along.min(), along.max()) == pytest.approx((0.3, np.hypot(*ends[1]) - 0.3), abs=0.1)
-
-
 def test_problems_in_random_circles_have_free_ends():
     """Circles so large and many that one would cover the other end if only one were kept free."""
     described = {"workspace": "close", "start": [-6, 0], "target": [4, 6], "obstacles": 10}

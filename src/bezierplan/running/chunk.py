@@ -34,9 +34,7 @@ class Chunk(NamedTuple):
     problems: dict[str, Settings]
     """Name -> the problem's workspace, and its layout, obstacles and settings, if it has any."""
     vary: dict[str, list]
-    """Setting or preset -> values; each combination of problems and values is a condition."""
-    presets: dict[str, dict[str, Settings]]
-    """Preset -> value, as text -> the settings that it stands for."""
+    """Setting -> values; each combination of problems and values is a condition."""
     seeds: str
     """Source of a run's seed: its id (`own`), its id without the method (`shared`), or study,
     experiment, layout and repeat alone (`common`: all methods and conditions share random numbers).

@@ -44,14 +44,11 @@ def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
 def resolve_settings(chunk: Chunk, condition: Condition) -> Settings:
     """Return all settings of a chunk's method under a condition.
 
-    Those of the problem come first, then the varied values. Presets expand to their settings;
-    varied values that are no settings of the planner are left out.
+    Those of the problem come first, then the varied values. Those that are no settings of the
+    planner are left out.
     """
     settings = chunk.settings | chunk.problems[condition.problem].get("settings", {})
-    for name, value in condition.values.items():
-        settings |= (
-            chunk.presets[name][str(value).lower()] if name in chunk.presets else {name: value}
-        )
+    settings |= condition.values
     accepted = interface.read_traits(chunk.planner).settings
     return {name: value for name, value in settings.items() if name in accepted}
 

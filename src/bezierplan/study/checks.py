@@ -232,9 +232,7 @@ class Checks:
         metrics.add_columns(extra)
 
     def check_shared_settings(self) -> None:
-        """Check that some planner accepts each setting of all methods, of a planner's methods, and
-        of presets.
-        """
+        """Check that each setting belongs to some planner, or to the one that it is under."""
         study = self.study
         planners = {method.planner: name for name, method in study.methods.items()}
         used = {setting for name in study.methods for setting in study.read_accepted_settings(name)}
@@ -248,11 +246,6 @@ class Checks:
             check_all(
                 settings, study.read_accepted_settings(planners[planner]), f"settings: {planner}"
             )
-        for preset, values in study.presets.items():
-            if preset in used or preset in RESERVED:
-                raise Fault(f"presets: {preset}: a setting or a column has this name")
-            for value, settings in values.items():
-                check_all(settings, used, f"presets: {preset}: {value}")
 
     def check_settings(self, study: Study, name: str) -> None:
         """Check that each setting of a method has a value that its planner accepts, also on
@@ -328,11 +321,7 @@ class Checks:
             for method in experiment.methods
             for setting in study.read_accepted_settings(method)
         }
-        check_all(experiment.vary, accepted | set(study.presets), "vary")
-        for setting in experiment.vary.keys() & study.presets.keys():
-            # Presets have text as keys, so true in a list stands for `true`.
-            values = (str(value).lower() for value in experiment.vary[setting])
-            check_all(values, study.presets[setting], f"vary: {setting}")
+        check_all(experiment.vary, accepted, "vary")
         # A baseline joins without being listed.
         factors = {"method": [*experiment.methods, *study.baselines]} | experiment.vary
         factors["problem"] = experiment.problems

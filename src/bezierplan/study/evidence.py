@@ -74,7 +74,6 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
         # How many runs one job makes, and when one is given up, changes no run.
         settings[f"experiment {name}"] = experiment.plain("chunk", "time_limit")
     settings |= {f"policy {name}": policy.plain() for name, policy in study.policies.items()}
-    settings["presets"] = study.presets
     return [
         (owner, setting, _shorten(str(value)))
         for owner, own in settings.items()

@@ -139,7 +139,7 @@ class Experiment(Model):
         description="a list of methods"
     )
     vary: dict[Name, build_list_type(Setting)] = Field(
-        {}, description="setting or preset → list of values; every combination is run"
+        {}, description="setting → list of values; every combination is run"
     )
     seeds: Literal["own", "shared", "common"] = Field(
         "own",
@@ -161,7 +161,7 @@ class Experiment(Model):
     fewer: dict[Name, dict[Part, Count]] = Field(
         {},
         description="where fewer runs suffice at scale extended: `method`, `problem`, or a varied "
-        "setting or preset → value → repeats, a multiple of the chunk",
+        "setting → value → repeats, a multiple of the chunk",
     )
 
     @model_validator(mode="after")
@@ -277,12 +277,6 @@ class ExperimentsFile(Model):
         "needs a value, there "
         "are no defaults. Under the name of a planner: settings of its methods alone, which take "
         "precedence over the others, such as `prm: {samples: 50}`"
-    )
-    presets: dict[Name, dict[Part, Settings]] = Field(
-        {},
-        description="name → value → settings that go with it: a bundle that an experiment can "
-        "vary like a setting, such as "
-        "`profile: {default: {}, tuned: {...}}`",
     )
     policies: dict[Name, Policy] = Field(
         {}, description="name → replanning policy of a robot in a dynamic environment"

@@ -74,7 +74,6 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
         settings={name: value for name, value in settings if name not in content.vary},
         problems=_list_problems(study, experiment, method, scale, first),
         vary=vary,
-        presets={name: preset for name, preset in study.presets.items() if name in content.vary},
         seeds=content.seeds,
         repeats=[first, first + size],
         time_limit=content.time_limit,

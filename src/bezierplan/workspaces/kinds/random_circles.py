@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from bezierplan.schema.model import NotNegative, Positive, build_value_type, is_number
+from bezierplan.schema.model import NotNegative, build_value_type, is_number
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of
@@ -35,11 +35,6 @@ class Options(Workspace):
     radius: Annotated[Any, build_value_type(_is_radius, RADIUS)] = Field(description=RADIUS)
     gap: NotNegative = Field(
         0, description="the least distance of circles from start and target, in units"
-    )
-    corridor: Positive = Field(
-        None,
-        description="how far centres lie from the straight line between start and target at most, "
-        "in units, a number above 0; left out: anywhere within the bounds",
     )
     circles: CircleCount = Field(description=CIRCLES)
 
@@ -69,8 +64,8 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
     """Draw one layout of a description with bounds, radius, circles (how many) and unit.
 
-    Centres are uniform within the bounds, or within the corridor; a circle that comes nearer to an
-    end, (x, y) in units, than the gap is redrawn. Circles may overlap each other.
+    Centres are uniform within the bounds; a circle that comes nearer to an end, (x, y) in units,
+    than the gap is redrawn. Circles may overlap each other.
 
     name: "study/workspace", which seeds the draw.
     number: number of the layout.
@@ -79,22 +74,15 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     """
     # Neither the number of circles nor the ends are part of the seed.
     rng = generator(name, number)
-    bounds = within = bounds_of(description["bounds"])
-    origin, axes, places = np.zeros(2), np.eye(2), np.array(ends)
-    if width := description.get("corridor"):
-        # Centres are drawn in coordinates along and across the straight line.
-        origin, way = places[0], places[1] - places[0]
-        length = float(np.hypot(*way))
-        axes = np.array([way, [-way[1], way[0]]]) / length
-        within, places = (0.0, length, -width, width), np.array([[0.0, 0.0], [length, 0.0]])
+    bounds = bounds_of(description["bounds"])
     given, gap = description["radius"], description.get("gap", 0)
     centres, radii = [], []
     for _ in range(description["circles"]):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
         # A larger circle needs a wider gap, so its radius comes first.
-        centres.append(draw_centres(rng, 1, within, places, radius + gap)[0])
+        centres.append(draw_centres(rng, 1, bounds, np.array(ends), radius + gap)[0])
         radii.append(radius)
-    return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
+    return Circles(bounds, np.array(centres), np.array(radii), description["unit"])
 
 
 def first(circles: Circles, count: int) -> Circles:
