@@ -15,7 +15,6 @@ from test_claims import (
     SHARE,
     TREND,
     WITHIN,
-    checks_of_claims,
     judge,
     judged,
     sample,
@@ -155,17 +154,6 @@ def test_an_event_at_its_limit(event, expected):
 )
 def test_a_sentence_about_extremes_holds_in_19_of_20_draws(share, expected):
     assert effects.mark_share(share) == expected
-
-
-@pytest.mark.parametrize(("runs", "known"), [(100, True), (99, False)])
-def test_ten_times_the_paper_s_runs_tell_a_chance(runs, known):
-    values = np.stack([sample("a", n=runs), sample("b", n=runs)], axis=1)
-    terms, printed = effects.Terms("a", "lower than", "b"), np.full(2, np.nan)
-    compared = effects.Contrast(
-        terms, (), ("a", "b"), {"": values}, printed, 10, boolean=False, paired=False
-    )
-    check = checks_of_claims.check_of(LOWER | {"statistic": "min"})
-    assert effects.measure_effect(check, compared, "")[0].chance_known == known
 
 
 def test_p_and_interval_of_draws():
