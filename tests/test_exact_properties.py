@@ -311,19 +311,6 @@ def mapped_points(points, flip):
     return points[..., ::-1] if flip == "diagonal" else points * (-1, 1) + (SIZE, 0)
 
 
-def moved(workspace, by):
-    """A workspace of circles or polygons, shifted."""
-    left, right, bottom, top = workspace.bounds
-    bounds = (left + by[0], right + by[0], bottom + by[1], top + by[1])
-    if isinstance(workspace, Circles):
-        return Circles(bounds, workspace.centres + by, workspace.radii, "m")
-    return Polygons(
-        bounds,
-        tuple(tuple(ring + by for ring in obstacle) for obstacle in workspace.obstacles),
-        "m",
-    )
-
-
 def pieces_along(bound):
     return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
 
@@ -354,24 +341,6 @@ def test_mirroring(problem, pieces, flip):
     assert_same_check(check(mapped_points(pieces, flip), build_region(mirrored.workspace)), found)
 
 
-@given(
-    st.builds(
-        Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE
-    ),
-    paths(),
-)
-def test_shifting(problem, pieces):
-    by = np.array([16.0, -32.0])
-    shifted = Problem(
-        "", moved(problem.workspace, by), *(tuple(by + p) for p in (problem.start, problem.target))
-    )
-    assert shortest_path(shifted).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
-    assert_same_check(
-        check(pieces + by, build_region(shifted.workspace)),
-        check(pieces, build_region(problem.workspace)),
-    )
-
-
 def assert_same_check(a, b):
     assert a.feasible == b.feasible
     assert a.collision_at == pytest.approx(b.collision_at, abs=1e-6, nan_ok=True)
@@ -396,27 +365,6 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     assert_same_check(
         check(pieces, build_region(squares))._replace(collision_at=found.collision_at), found
     )
-
-
-def regular(circle, corners, shape):
-    """A regular polygon inside a circle, or around it."""
-    x, y, radius = circle
-    angles = np.arange(corners) * math.tau / corners
-    reach = radius if shape == "inside" else radius / math.cos(math.pi / corners)
-    return np.array([x, y]) + reach * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-@given(circle_workspaces(), PLACE, PLACE)
-def test_circles_lie_between_polygons_inside_and_around_them(circles, start, target):
-    table = np.column_stack([circles.centres, circles.radii])
-    lengths = []
-    for shape in ("inside", "around"):
-        rings = tuple((regular(circle, 60, shape),) for circle in table)
-        lengths.append(
-            shortest_path(Problem("", Polygons(circles.bounds, rings, "m"), start, target)).length
-        )
-    length = shortest_path(Problem("", circles, start, target)).length
-    assert lengths[0] * (1 - 1e-9) <= length <= lengths[1] * (1 + 1e-9)
 
 
 def elevated(piece, times):
