@@ -227,22 +227,6 @@ def test_clipped_numbers_are_recorded():
     assert plan(**start).extra["zeta_clipped"] == 0
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [{"chaotic_term": "cognitive"}, {"chaotic_term": "social", "chaotic_map": "sine"}, {"c1": 0.0}],
-)
-def test_all_methods_start_alike(changes):
-    assert plan(EQUAL, 3, **changes).history[0] == plan(EQUAL, 3).history[0]
-
-
-def test_a_larger_swarm_begins_with_the_smaller():
-    for seed in range(10):
-        assert (
-            plan(seed=seed, particles=40, iterations=0).objective
-            <= plan(seed=seed, iterations=0).objective
-        )
-
-
 def test_track_gives_the_best_path_of_every_iteration():
     settings = SETTINGS | {"chaotic_term": "social"}
     found = plan(PUBLIC, 4, **settings)

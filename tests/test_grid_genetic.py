@@ -11,7 +11,6 @@ from studies import planned
 
 from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.planners import grid_genetic
-from bezierplan.planners.parts.cell_paths import cut_loops
 
 plan = partial(planned, "elhoseny2017", "ga")
 
@@ -91,21 +90,6 @@ def is_path(cells, walls, columns):
     row, column = np.divmod(cells, columns)
     steps = np.maximum(abs(np.diff(row)), abs(np.diff(column)))
     return bool((steps == 1).all() and not walls[cells].any())
-
-
-def test_loops_are_cut_from_the_last_visit_on():
-    rng = np.random.default_rng(0)
-    marks = np.zeros(30, dtype=np.int64)
-    for _ in range(100):
-        walk = rng.integers(0, 30, 60)
-        expected, k = [], 0
-        while k < len(walk):
-            expected.append(walk[k])
-            k = max(np.flatnonzero(walk == walk[k])) + 1
-        cut = walk.copy()
-        count = cut_loops(cut, marks)
-        assert cut[:count].tolist() == expected
-        assert len(set(expected)) == count
 
 
 @pytest.mark.filterwarnings("ignore::numba.NumbaPendingDeprecationWarning")

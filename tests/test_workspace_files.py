@@ -368,12 +368,6 @@ def test_layout_depends_on_its_names_alone_and_is_nested():
     )
 
 
-def test_layouts_leave_the_ends_free():
-    for number in range(200):
-        centres = random_circles.layout(RANDOM, "study/random", number, [(0, 0), (4, 6)]).centres
-        assert min(np.hypot(*(centres - end).T).min() for end in [(0, 0), (4, 6)]) > 2.0
-
-
 def test_circles_of_a_corridor_lie_along_the_straight_line():
     """None is farther from it than the half-width, or before the start, or beyond the target."""
     corridor, ends = RANDOM | {"radius": 0.5, "corridor": 0.4}, [(0, 0), (4, 6)]
