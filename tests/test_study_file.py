@@ -26,16 +26,6 @@ def folder(tmp_path):
 EXPERIMENTS = "experiments.yaml"
 
 
-def test_unknown_study_is_told_with_the_closest_name():
-    with pytest.raises(Fault, match=r"song2061.*did you mean song2016\?"):
-        loading.read_config({"studies": ["song2061"]})
-
-
-def test_unknown_key_of_the_configuration_is_told():
-    with pytest.raises(Fault, match=r"studys: unknown key; did you mean studies\?"):
-        loading.read_config({"studys": ["song2016"]})
-
-
 def test_the_same_study_twice_is_told():
     with pytest.raises(Fault, match="name song2016 is there already"):
         loading.load([SONG, SONG])
