@@ -297,41 +297,29 @@ def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
     assert np.mean(middle > 250) > 0.5
 
 
-# What a planner answers, or does before it does, and the fault. The room has a wall between start
-# and target.
+# What a planner does, and the fault. The room has a wall between start and target.
 ANSWERS = {
     "elsewhere": (
         "line[1] = (1.5, 0.5)",
-        "answer",
         "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)",
     ),
-    "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
-    "an error": ("{}[1]", "answer", "line 7 of own.py: KeyError: 1"),
     "an error of two lines": (
         'raise ValueError("a\\nb")',
-        "answer",
         "line 7 of own.py: ValueError: a b",
-    ),
-    "an exit": ("raise SystemExit(0)", "answer", "line 7 of own.py: sys.exit: 0"),
-    "an empty map": (
-        "problem.workspace.occupied[:] = False",
-        "answer",
-        "line 7 of own.py: ValueError: assignment destination is read-only",
     ),
 }
 
 
 @pytest.mark.parametrize("name", ANSWERS)
 def test_answer_of_a_planner_comes_through_the_door(capsys, tmp_path, name):
-    code, answer, fault = ANSWERS[name]
+    code, fault = ANSWERS[name]
     (tmp_path / "room.txt").write_text("....\n.#..\n.#..\n")
     planner = tmp_path / "own.py"
     planner.write_text(
         "import numpy as np\nfrom bezierplan.planners import Path, Plan\n\n\n"
         "def plan(problem, rng):\n"
         f"    line = np.array([problem.start, problem.target])\n    {code}\n"
-        '    answer = Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
-        f"    return {answer}\n"
+        '    return Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
     )
     ends = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
     line = refused(capsys, tmp_path / "room.txt", *ends, "--method", planner)

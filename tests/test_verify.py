@@ -290,16 +290,6 @@ SLIPS = {
         "    rng = type('', (), {'normal': lambda *_: min(best)})",
         "nothing kept from an earlier run",
     ),
-    "a rising history": (
-        "rising = np.array([1.0, 2.0])\n    Plan = lambda *given, history, **more: "
-        "__import__('bezierplan').planners.Plan(*given, history=rising, **more)",
-        "its answer: history: rises; expected the best objective so far",
-    ),
-    "another objective": (
-        "Plan = lambda path, length, **more: "
-        "__import__('bezierplan').planners.Plan(path, 99.0, **more)",
-        "its answer: objective: 99.0; expected the last of history, ",
-    ),
     "an order of words": (
         "rng = np.random.default_rng(abs(hash('word')))",
         "no id() or hash()",
