@@ -176,6 +176,16 @@ ROS_FAULTS = {
     "mode": (("negate: 0", "negate: 0\nmode: Raw"), "mode: Raw: unknown; did you mean raw"),
     "misspelt": (("negate: 0", "occupied_threshold: 1"), "occupied_threshold: unknown key; did"),
     "no mapping": ((YAML, "just a word\n"), "'just a word': expected a mapping with image"),
+    "an image elsewhere": (("room.png", "/etc/passwd"), "image: /etc/passwd: no such file in"),
+    "an image that is text": (("room.png", "room.yaml"), ".*cannot be read as an image"),
+    "a resolution twice": (
+        ("negate: 0", "resolution: 1"),
+        "room.yaml: line 4: resolution: this key",
+    ),
+    "a tag": (
+        ("negate: 0", "other: !!python/name:os.system"),
+        "room.yaml: line 4: could not determine a constructor for the tag",
+    ),
 }
 
 

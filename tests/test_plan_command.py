@@ -210,6 +210,23 @@ def test_other_kinds_of_map(capsys, tmp_path):
     assert lines["shortest path"] == "4.82843 m"
 
 
+def test_what_editors_and_windows_write_is_read(capsys, tmp_path):
+    """A byte order mark, blank lines at the end, line ends of Windows, suffixes in capitals, and a
+    path of another machine.
+    """
+    Image.fromarray(np.full((3, 4), 254, dtype=np.uint8)).save(tmp_path / "room.png")
+    room = "image: C:\\maps\\room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\n"
+    for name, text in {
+        "a.TXT": "....\r\n.##.\r\n....\r\n\r\n",
+        "a.geojson": (BENCHMARK_MAPS / "gaps.geojson").read_text(),
+        "a.yaml": room,
+    }.items():
+        (tmp_path / name).write_bytes(b"\xef\xbb\xbf" + text.encode())
+        ends = ["--start", "-0.9,2.5"] if name == "a.yaml" else ["--start", "0.5,2.5"]
+        found = planned(capsys, tmp_path / name, *ends, "--target", "0.9,2.5")
+        assert found["feasible"] == "yes"
+
+
 FAULTS = {
     "start in an obstacle": (
         [GAPS, "--start", "5,10", "--target", "18,10"],
