@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 import scipy
 import shapely
-from fields import BENCHMARK_MAPS, CELLS, benchmark
+from fields import BENCHMARK_MAPS, CELLS, assert_is_bound, benchmark
 
-from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import build_region
 from bezierplan.geometry.shortest_paths import (
     Bound,
     centre_path,
@@ -50,27 +48,12 @@ def on_cells(occupied, start, target, cell=1.0):
     return Problem("", Grid(np.array(occupied, dtype=bool), cell, "m"), start, target)
 
 
-def pieces(bound):
-    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
-
-
-def assert_is_path(bound, problem):
-    """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6
-    more), and is free.
-    """
-    np.testing.assert_allclose(bound.points[[0, -1]], [problem.start, problem.target], atol=1e-12)
-    drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
-    excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
-    assert -1e-9 <= drawn - bound.length <= excess + 1e-9
-    assert check(pieces(bound), build_region(problem.workspace)).feasible
-
-
 @pytest.mark.parametrize("name", sorted(file.stem for file in BENCHMARK_MAPS.glob("*.geojson")))
 def test_shortest_paths_of_the_benchmark_maps(name):
     problem, length = benchmark(name)
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(length, abs=1e-5)
-    assert_is_path(bound, problem)
+    assert_is_bound(bound, problem)
 
 
 SONG = [
@@ -89,8 +72,8 @@ def test_paths_of_the_workspace_of_song2016(first, last, any_angle, through_cent
     problem = Problem("", grid, grid.centre(first), grid.centre(last))
     assert shortest_path(problem).length == pytest.approx(any_angle, abs=1e-5)
     assert centre_path(problem).length == pytest.approx(through_centres, abs=1e-5)
-    assert_is_path(shortest_path(problem), problem)
-    assert_is_path(centre_path(problem), problem)
+    assert_is_bound(shortest_path(problem), problem)
+    assert_is_bound(centre_path(problem), problem)
 
 
 CORNER_CONTACT = np.zeros((4, 4), dtype=bool)
@@ -118,7 +101,7 @@ def test_a_path_passes_a_contact(start, target, length, mirrored, cell):
     problem = on_cells(occupied, start, target, cell)
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(cell * length, abs=1e-5)
-    assert_is_path(bound, problem)
+    assert_is_bound(bound, problem)
 
 
 @pytest.mark.parametrize(
@@ -141,7 +124,7 @@ def test_paths_around_circles(discs, start, target, length):
     problem = around(discs, start, target)
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(length, abs=1e-9)
-    assert_is_path(bound, problem)
+    assert_is_bound(bound, problem)
 
 
 @pytest.mark.parametrize(("discs", "most"), [(EQUAL, 553), (PUBLIC, 405)], ids=["equal", "public"])
@@ -156,7 +139,7 @@ def test_a_polyline_keeps_clear_of_a_neighbouring_circle():
     problem = around(((0, 0, 1), (0, 2 + 1e-7, 1)), (-2, 0.5), (2, 0.4))
     bound = shortest_path(problem)
     assert bound.points[:, 1].max() >= 1
-    assert_is_path(bound, problem)
+    assert_is_bound(bound, problem)
 
 
 @pytest.mark.parametrize(
@@ -247,7 +230,7 @@ def test_paths_among_polygons(obstacles, start, target, length):
     problem = among(obstacles, start, target)
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(length, rel=1e-12)
-    assert_is_path(bound, problem)
+    assert_is_bound(bound, problem)
 
 
 @pytest.mark.parametrize("weight", [1.5, ROOT2, 0.9, 2.5])
@@ -344,7 +327,7 @@ def test_a_path_on_a_grid_is_as_long_as_among_its_cells(place):
         assert found.length == pytest.approx(expected.length, rel=1e-12)
         found_none += math.isinf(found.length)
         if math.isfinite(found.length):
-            assert_is_path(found, problem)
+            assert_is_bound(found, problem)
     assert 4 < found_none < 48
 
 
@@ -387,5 +370,5 @@ def test_a_path_among_polygons_is_as_long_as_in_the_graph_of_all_corners(kind):
             length_in_graph(rings, problem.start, problem.target), rel=1e-12
         )
         found_ways += len(found.points) > 2
-        assert_is_path(found, problem)
+        assert_is_bound(found, problem)
     assert found_ways > 10

@@ -3,13 +3,11 @@ draw.
 """
 
 import math
-from pathlib import Path as File
 
 import numpy as np
-import pandas as pd
 import pytest
 from studies import drawing as drawn
-from studies import study
+from studies import published, study
 
 from bezierplan.geometry import cell_length
 from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
@@ -18,8 +16,7 @@ from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path
 
-FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
-PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+PUBLISHED = published("elhoseny2017")
 
 
 def test_expected_lengths_are_those_of_free_and_blocked_diagonals():

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fields import BENCHMARK_MAPS, CELLS
+from fields import BENCHMARK_MAPS, CELLS, pieces_of
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -311,10 +311,6 @@ def mapped_points(points, flip):
     return points[..., ::-1] if flip == "diagonal" else points * (-1, 1) + (SIZE, 0)
 
 
-def pieces_along(bound):
-    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
-
-
 @given(PROBLEMS)
 def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
     bound = shortest_path(problem)
@@ -326,7 +322,7 @@ def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
         assert bound.length > straight
     assert least_length(bound) <= bound.length
     if bound.length < math.inf:
-        assert check(pieces_along(bound), blocked).feasible
+        assert check(pieces_of(bound), blocked).feasible
 
 
 @given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]))
@@ -425,7 +421,7 @@ def test_lattice_centre_and_any_angle_paths(grid, start, target):
     blocked = build_region(grid)
     for bound in bounds:
         if len(bound.points) > 1:
-            found = check(pieces_along(bound), blocked)
+            found = check(pieces_of(bound), blocked)
             assert found.feasible
             assert found.intervals <= 64 + len(bound.points)
     lengths = [bound.length for bound in bounds]

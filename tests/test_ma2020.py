@@ -9,7 +9,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-from studies import drawing, problem_of
+from studies import drawing, problem_of, published
 
 from bezierplan.analysis.audit import audit
 from bezierplan.geometry import checker, curves, shortest_paths
@@ -21,7 +21,7 @@ from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
 STUDY = checked.read(FOLDER / "experiments.yaml")
-PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+PUBLISHED = published("ma2020")
 problem = partial(problem_of, "ma2020")
 
 MAPS = {

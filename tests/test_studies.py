@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 from fields import among_circles
 from studies import FOLDER as STUDIES
-from studies import KEYS, arguments, drawing, problem_of
+from studies import KEYS, arguments, drawing, problem_of, published
 from studies import study as shared
 
 from bezierplan.analysis import metrics
@@ -29,10 +29,6 @@ SWARM = {name: value for name, value in THARWAT["settings"].items() if not isins
 SAMPLES, BETA = 100, 100.0
 SEQUENCES = arguments("tharwat2018", "chaotic_sequences")
 problem = partial(problem_of, "tharwat2018")
-
-
-def published(study):
-    return {file.stem: pd.read_csv(file) for file in (STUDIES / study / "published").glob("*.csv")}
 
 
 def faults(rows):
