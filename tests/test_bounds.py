@@ -10,6 +10,7 @@ import pytest
 import scipy
 import shapely
 from fields import BENCHMARK_MAPS, CELLS, assert_is_bound, benchmark
+from fields import among_circles as around
 
 from bezierplan.geometry.shortest_paths import (
     Bound,
@@ -18,21 +19,14 @@ from bezierplan.geometry.shortest_paths import (
     least_length,
     shortest_path,
 )
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import STEPS, list_neighbours
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
 ROOT2 = math.sqrt(2)
-WORLD = (-10.0, 10.0, -10.0, 10.0)
 EQUAL = ((1.5, 4.5, 1.2), (4.0, 3.0, 1.2), (1.2, 1.5, 1.2))
 PUBLIC = ((1.5, 4.5, 1.5), (4.0, 3.0, 1.0), (1.2, 1.5, 0.8))
-
-
-def around(discs, start, target, bounds=WORLD):
-    table = np.array(discs, dtype=float).reshape(-1, 3)
-    return Problem("", Circles(bounds, table[:, :2], table[:, 2], "m"), start, target)
 
 
 def among(obstacles, start, target, bounds=(0.0, 10.0, 0.0, 10.0)):
@@ -147,7 +141,9 @@ def test_a_polyline_keeps_clear_of_a_neighbouring_circle():
     [
         around(((0, 0, 1),), (0.5, 0), (3, 0)),
         around(
-            ((0, 0, 1), (0, 2, 1.5), (0, -2, 1.5)), (-3, 0), (3, 0), bounds=(-4.0, 4.0, -3.0, 3.0)
+            ((0, 0, 1), (0, 2, 1.5), (0, -2, 1.5), (0, 6, 3), (0, -6, 3), (0, 9, 2), (0, -9, 2)),
+            (-3, 0),
+            (3, 0),
         ),
         on_cells([[False, True, False]], (0.5, 0.5), (2.5, 0.5)),
         on_cells([[False, False, False]], (0.5, 0.5), (3.5, 0.5)),
@@ -288,17 +284,6 @@ def test_the_least_length_of_a_feasible_path():
     assert least_length(Bound(math.inf, np.empty((0, 2)))) == math.inf
 
 
-def blocks(side, share, largest, rng):
-    """Random blocks of cells, start and target free in opposite corners."""
-    occupied = np.zeros((side, side), dtype=bool)
-    while occupied.mean() < share:
-        height, width = rng.integers(1, largest + 1, 2)
-        row, column = rng.integers(0, side - height + 1), rng.integers(0, side - width + 1)
-        occupied[row : row + height, column : column + width] = True
-    occupied[:2, :2] = occupied[-2:, -2:] = False
-    return occupied
-
-
 @pytest.mark.parametrize("place", ["cells", "lattice", "anywhere"])
 def test_a_path_on_a_grid_is_as_long_as_among_its_cells(place):
     """Single cells and blocks, contacts and dead ends, from points on corners, on edges, in cells
@@ -309,7 +294,8 @@ def test_a_path_on_a_grid_is_as_long_as_among_its_cells(place):
     for _ in range(60):
         rows, columns = rng.integers(1, 15, 2)
         single = rng.random((rows, columns)) < rng.choice([0.1, 0.3, 0.5])
-        occupied = blocks(15, 0.25, 4, rng)[:rows, :columns] if rng.random() < 0.3 else single
+        blocks = np.kron(single[::2, ::2], np.ones((2, 2), dtype=bool))[:rows, :columns]
+        occupied = blocks if rng.random() < 0.3 else single
         grid = Grid(occupied, 0.5, "m", (1.0, -2.0))
         parts = {
             "cells": rng.integers(0, 2 * rows + 1, 4) / 2,
