@@ -40,6 +40,13 @@ def among_circles(circles, start=(0.0, 0.0), target=(4.0, 6.0)) -> Problem:
     return Problem("test", field, start, target)
 
 
+def field_of(side: float, *circles: tuple[float, float, float]) -> Grid:
+    """The cells of a square field with circles (x, y, radius)."""
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    home = Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
+    return random_field.from_circles(home)
+
+
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:
     """From corner to corner of the field of a number, both pairs of corners in turn; radius: of the
     obstacles, as a share of the side.

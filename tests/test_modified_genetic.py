@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from fields import assert_path_fits, drawn
+from fields import assert_path_fits, drawn, field_of
 from studies import planned, study
 
 from bezierplan.geometry import cell_length, curves
@@ -16,8 +16,6 @@ from bezierplan.papers.elhoseny2017.functions import compute_q
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import gene_curves
 from bezierplan.planners.parts.settings import fill_settings
-from bezierplan.workspaces import random_field
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -34,10 +32,7 @@ def field(
     gene_lattice="coarse",
     point_order="index",
 ):
-    table = np.array(circles, dtype=float).reshape(-1, 3)
-    grid = random_field.from_circles(
-        Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
-    )
+    grid = field_of(side, *circles)
     ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
     return planner.build_field(grid, grid.in_cells(ends), gene_lattice, point_order)
 

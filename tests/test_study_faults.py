@@ -138,7 +138,3 @@ def test_equal_faults_of_several_entries_and_what_fails_after_them_are_all_told(
     assert sum("start: 3" in line or "trys: unknown" in line for line in lines) == 2
     assert sum("ZeroDivisionError" in line for line in lines) == 1
     assert len(lines) == 9
-
-
-def test_studies_for_tests_have_no_fault():
-    assert loading.load([DATA / "walks", DATA / "yard"])
