@@ -36,18 +36,8 @@ def test_paths_are_free_and_cost_what_is_said(number):
         == cell_length.length4(found.path, grid)
         == cell_length.length8(found.path, grid)
     )
-    assert least(problem) <= found.objective <= 1.03 * least(problem)
+    assert least(problem) <= found.objective <= 1.01 * least(problem)
     assert found.evaluations == 60 * 81
-
-
-def test_paths_are_next_to_the_cheapest_ones():
-    problems = [drawn(number) for number in range(12)]
-    first, final = (
-        np.mean([plan(each, generations=count).objective / least(each) - 1 for each in problems])
-        for count in (0, 80)
-    )
-    assert final < 0.01
-    assert final < 0.5 * first
 
 
 def test_a_diagonal_step_may_pass_between_two_occupied_cells():
