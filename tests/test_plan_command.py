@@ -197,19 +197,6 @@ def test_a_target_that_cannot_be_reached_ends_with_status_1(capsys, tmp_path):
     assert lines["failure"] == "--target: 3.5,0.5: no free way leads there from the start"
 
 
-def test_other_kinds_of_map(capsys, tmp_path):
-    (tmp_path / "room.txt").write_text("....\n.##.\n....\n")
-    lines = planned(capsys, tmp_path / "room.txt", "--start", "0.5,1.5", "--target", "3.5,1.5")
-    assert lines["shortest path"] == "3.41421 cell"
-    pixels = np.full((3, 3), 254, dtype=np.uint8)
-    pixels[1, 1] = 0
-    Image.fromarray(pixels).save(tmp_path / "room.pgm")
-    (tmp_path / "room.yaml").write_text("image: room.pgm\nresolution: 2\norigin: [-3, -3, 0]\n")
-    ends = ["--start", "-2,0", "--target", "2,0"]
-    lines = planned(capsys, tmp_path / "room.yaml", *ends, "--settings", "{turning_radius: 0}")
-    assert lines["shortest path"] == "4.82843 m"
-
-
 def test_what_editors_and_windows_write_is_read(capsys, tmp_path):
     """A byte order mark, blank lines at the end, line ends of Windows, suffixes in capitals, and a
     path of another machine.
