@@ -1,5 +1,5 @@
 """The particle swarms of tharwat2018: their search against a plain reference, fixed values, frozen
-swarms, shared numbers, bad input.
+swarms, bad input.
 """
 
 import math

@@ -1,4 +1,6 @@
-"""Digests of code: what counts and what does not."""
+"""Digests of code: what counts and what does not; edits of words and of modules, which `verify`
+has to tell apart as well, are in `test_account`.
+"""
 
 import ast
 import copy

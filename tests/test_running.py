@@ -1,6 +1,4 @@
-"""A chunk of runs: rows in the order of conditions and repeats whatever order they were made in,
-and stable times.
-"""
+"""A chunk of runs: conditions that take turns, repeats that count as one, and stable times."""
 
 import time
 from types import ModuleType
