@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from trees import edit
 
 from bezierplan.schema.checked import Fault
 from bezierplan.study import loading
@@ -12,9 +13,7 @@ def told(file: Path, old: str, new: str, study: Path) -> str:
     """What loading a study tells, in one line, when a file of its folder has new words in the place
     of old ones, which it must have.
     """
-    text = file.read_text()
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
+    edit(file, old, new)
     with pytest.raises(Fault) as caught:
         loading.load([study])
     assert "\n" not in str(caught.value)

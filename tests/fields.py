@@ -10,6 +10,7 @@ import numpy as np
 from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import build_region
+from bezierplan.geometry.shortest_paths import Bound
 from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -37,6 +38,13 @@ def among_circles(circles, start=(0.0, 0.0), target=(4.0, 6.0)) -> Problem:
     table = np.array(circles, dtype=float).reshape(-1, 3)
     field = Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit")
     return Problem("test", field, start, target)
+
+
+def field_of(side: float, *circles: tuple[float, float, float]) -> Grid:
+    """The cells of a square field with circles (x, y, radius)."""
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    home = Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
+    return random_field.from_circles(home)
 
 
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:
@@ -87,6 +95,22 @@ def assert_path_fits(problem: Problem, found: Plan) -> None:
         <= cell_length.length8(found.path, grid)
         <= cell_length.length4(found.path, grid)
     )
+
+
+def pieces_of(bound: Bound) -> np.ndarray:
+    """The legs of a shortest path, as the checker takes them."""
+    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
+
+
+def assert_is_bound(bound: Bound, problem: Problem) -> None:
+    """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6
+    more), and is free.
+    """
+    np.testing.assert_allclose(bound.points[[0, -1]], [problem.start, problem.target], atol=1e-12)
+    drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
+    excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
+    assert -1e-9 <= drawn - bound.length <= excess + 1e-9
+    assert check(pieces_of(bound), build_region(problem.workspace)).feasible
 
 
 def on_map(

@@ -48,6 +48,13 @@ def arguments(key: str, function: str) -> dict[str, Any]:
     raise KeyError(function)
 
 
+@cache
+def published(key: str) -> dict[str, pd.DataFrame]:
+    """The published numbers of a study, by table. Tests share them, so none may change them."""
+    files = sorted((FOLDER / key / "published").glob("*.csv"))
+    return {file.stem: pd.read_csv(file) for file in files}
+
+
 def drawing(key: str, name: str) -> pd.DataFrame:
     """The marks of a drawing of a study, from its file."""
     file = FOLDER / key / "published" / f"{name}.csv"

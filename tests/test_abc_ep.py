@@ -7,14 +7,12 @@ from functools import partial
 
 import numpy as np
 import pytest
-from fields import assert_path_fits, drawn
+from fields import assert_path_fits, drawn, field_of
 from studies import planned, study
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners import abc_ep
 from bezierplan.planners.parts.settings import fill_settings
-from bezierplan.workspaces import random_field
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -24,9 +22,7 @@ plan = partial(planned, "elhoseny2017", "abc_ep")
 
 def field(*circles, side=100):
     """A field from corner to corner with circles (x, y, radius)."""
-    table = np.array(circles, dtype=float).reshape(-1, 3)
-    grid = random_field.from_circles(Circles((0, side, 0, side), table[:, :2], table[:, 2], "cell"))
-    return Problem("test", grid, (0.0, 0.0), (float(side), float(side)))
+    return Problem("test", field_of(side, *circles), (0.0, 0.0), (float(side), float(side)))
 
 
 def settings(**changes):

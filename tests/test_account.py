@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import starts
 from chunks import CLAIMS
+from trees import edit
 
 from bezierplan.places import TREE
 
@@ -200,12 +201,7 @@ def append(text):
 
 
 def put(old, new):
-    def edit(file):
-        text = file.read_text()
-        assert old in text
-        file.write_text(text.replace(old, new, 1))
-
-    return edit
+    return lambda file: edit(file, old, new)
 
 
 def turn(file):

@@ -16,6 +16,11 @@ GRID = Grid(np.zeros((6, 6), dtype=bool), 1.0, "unit")
 PLACES = build_grid_lattice(GRID, (0.0, 0.0), (6.0, 6.0), "one")
 
 
+FOUR_CELLS = build_grid_lattice(
+    Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit"), (0.0, 0.0), (2.0, 2.0), "one"
+)
+
+
 def search(seed=0, places=PLACES, **changes):
     return ant_colony.search(places, np.random.default_rng(seed), colony_rules(**changes))
 
@@ -29,13 +34,7 @@ def test_the_first_step_is_drawn_by_nearness_of_the_target():
 
 
 def test_the_target_has_a_nearness_of_its_own():
-    grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
-    colony = search(
-        places=build_grid_lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"),
-        ants=4000,
-        iterations=1,
-        target_heuristic=2.0,
-    )
+    colony = search(places=FOUR_CELLS, ants=4000, iterations=1, target_heuristic=2.0)
     assert stats.binomtest((colony.sizes == 2).sum(), 4000, 4 / 6).pvalue > 1e-3
 
 
@@ -44,10 +43,8 @@ def test_a_trail_draws_by_its_power(weight, direct):
     """Second ants, after first ones that went straight to the target and doubled the trail of that
     step.
     """
-    grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
-    places = build_grid_lattice(grid, (0.0, 0.0), (2.0, 2.0), "one")
     settings = {
-        "places": places,
+        "places": FOUR_CELLS,
         "ants": 1,
         "target_heuristic": 1.0,
         "evaporation": 0.0,

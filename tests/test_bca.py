@@ -20,7 +20,6 @@ FEW = {"population": 20, "generations": 10}
 OPEN = Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell")
 STRAIGHT = 20 * math.sqrt(2)
 BLOCK = from_lines(["....", ".##.", ".##.", "...."], 1.0, "cell")
-WALL = from_lines(["..#..", "..#..", "..#.."], 1.0, "cell")
 
 
 def random_grid(seed, share=0.15):
@@ -29,9 +28,9 @@ def random_grid(seed, share=0.15):
     return Grid(occupied, 1.0, "cell")
 
 
-def plan(grid=OPEN, seed=0, start=(0.0, 0.0), target=None, **changes):
-    target = target or (grid.bounds[1], grid.bounds[3])
-    return planned("ma2020", "bca", Problem("test", grid, start, target), seed, **FEW | changes)
+def plan(grid=OPEN, seed=0, **changes):
+    corner = grid.bounds[1], grid.bounds[3]
+    return planned("ma2020", "bca", Problem("test", grid, (0, 0), corner), seed, **FEW | changes)
 
 
 def reference(path, grid, samples):
@@ -88,14 +87,6 @@ def test_cost_of_the_literal_forms(seed, fitness, feasible):
         assert found.objective == pytest.approx(
             length if fitness == "reciprocal_literal" else 1 / length
         )
-
-
-def test_as_printed_prefers_long_paths():
-    lengths = {
-        fitness: curves.length(plan(fitness=fitness, generations=30).path)
-        for fitness in ("length", "as_printed")
-    }
-    assert lengths["as_printed"] > lengths["length"] + 3
 
 
 @given(st.integers(0, 10_000))
@@ -171,33 +162,16 @@ def test_an_empty_map_has_no_safety_term():
     assert STRAIGHT - 1e-9 <= curves.length(found.path) < 1.2 * STRAIGHT
 
 
-def test_a_wall_ends_in_a_path_that_is_said_to_collide():
-    found = plan(WALL, start=(0.5, 1.5), target=(4.5, 1.5), generations=40, control_points=3)
-    assert not found.claimed_feasible
-    assert found.extra["bad_samples"] > 0
-    assert found.extra["safety_term"] == 1
-
-
 def test_no_safety_distance_is_never_undercut():
-    """Then BCA-Q is BCA on another scale, also for paths that collide."""
+    """Then BCA-Q is BCA on another scale, also for a path that collides."""
     grid = random_grid(4, 0.3)
     bca_q, shortest = (
         plan(grid, fitness=fitness, safety_distance=0, generations=30)
         for fitness in ("repaired", "length")
     )
+    assert not bca_q.claimed_feasible
     assert bca_q.extra["safety_term"] == 0
     assert bca_q.objective * STRAIGHT / 0.8 == pytest.approx(shortest.objective)
-    assert (
-        plan(
-            WALL,
-            fitness="repaired",
-            safety_distance=0,
-            control_points=0,
-            start=(0.5, 1.5),
-            target=(4.5, 1.5),
-        ).extra["safety_term"]
-        == 0
-    )
 
 
 def test_a_chain_of_pieces_is_measured_like_its_path():

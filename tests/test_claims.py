@@ -196,19 +196,6 @@ def test_any_names_make_right_sentences(names, together, tmp_path):
     assert named == f"{title}, workspace a, b=c"
 
 
-def test_a_sentence_follows_from_a_row_alone(tmp_path):
-    _, checks = judge({"checks": [LOWER]}, APART)
-    checks.to_csv(tmp_path / "claim_checks.csv", index=False)
-    row = pd.read_csv(tmp_path / "claim_checks.csv").iloc[0]
-    assert (
-        f"{row['group']} is {abs(row['effect']):g} {row['unit']} {row['relation']} {row['other']}"
-        == ("a is 1 m lower than b")
-    )
-    assert row["scale"] == "absolute"
-    assert row["low95"] < row["effect"] < row["high95"]
-    assert (row["metric"], row["n"], row["mark"]) == ("objective", UNITS, "+")
-
-
 def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
     """Runs of one method at five values of `particles`; the mean grows with slope, the standard
     deviation is std times the number.
@@ -348,9 +335,10 @@ def test_59_runs_without_an_example_are_enough(threshold, misses, n, expected):
 
 
 def test_a_chance_that_enough_runs_tell_is_not_undecided():
+    """Ten times the paper's ten are enough."""
     check = LOWER | {"statistic": "min"}
     found = [
-        judged(check, table({"a": sample("a", n=n), "b": sample("b", n=n)})) for n in (40, 400)
+        judged(check, table({"a": sample("a", n=n), "b": sample("b", n=n)})) for n in (99, 100)
     ]
     assert [row["verdict"] for row in found] == ["undecided", "depends"]
     assert found[1]["reason"].startswith("holds in ")

@@ -14,8 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from checks_of_claims import check_of
-from studies import FOLDER as STUDIES
-from studies import KEYS, study
+from studies import KEYS, published, study
 
 from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims import comparisons, judge, variants
@@ -47,13 +46,6 @@ TRUTHS = {
 SPREADS = ("iqr", "std", "range")
 PROBLEM = Problem("", from_lines(["..", ".."], 1.0, "m"), (0.5, 0.5), (1.5, 1.5))
 FALSE_VERDICTS = {"contradicted", "no effect", "partly"}
-
-
-@cache
-def published(key):
-    return {
-        file.stem: pd.read_csv(file) for file in sorted((STUDIES / key / "published").glob("*.csv"))
-    }
 
 
 @cache

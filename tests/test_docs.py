@@ -11,6 +11,7 @@ from subprocess import CompletedProcess
 import pyarrow.parquet as parquet
 import pytest
 import starts
+from trees import edit
 
 from bezierplan.schema.checked import Fault
 from bezierplan.study import loading
@@ -106,15 +107,9 @@ def test_configuration_of_a_module_is_checked(given, expected):
 
 
 def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
-    file = (
-        shutil.copytree(ROOT / "config/studies/song2016", tmp_path / "song2016")
-        / "experiments.yaml"
-    )
-    file.write_text(
-        file.read_text().replace(
-            "  genes: 6", "  binary_genetic: {generations: 8, population: 8}\n  genes: 6", 1
-        )
-    )
+    copy = shutil.copytree(ROOT / "config/studies/song2016", tmp_path / "song2016")
+    own = "  binary_genetic: {generations: 8, population: 8}\n  genes: 6"
+    edit(copy / "experiments.yaml", "  genes: 6", own)
     given = {
         "studies": [f"{tmp_path}/song2016"],
         "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}},

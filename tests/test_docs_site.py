@@ -16,7 +16,7 @@ import pandas as pd
 import pytest
 from bs4 import BeautifulSoup
 from playwright.sync_api import expect
-from test_page_browser import browser, needs_browser  # noqa: F401
+from test_page_browser import browser, complaints_of, needs_browser, violations  # noqa: F401
 
 import bezierplan as bp
 from bezierplan.analysis.legend import WORDS
@@ -191,18 +191,8 @@ def tab(request, browser, address):  # noqa: F811
         base_url=address, viewport={"width": request.param, "height": 900}
     )
     context.set_default_timeout(60_000)
-    tab, complaints = context.new_page(), []
-    tab.on(
-        "console",
-        lambda message: (
-            complaints.append(message.text) if message.type in ("error", "warning") else None
-        ),
-    )
-    tab.on("pageerror", lambda error: complaints.append(str(error)))
-    tab.on(
-        "request",
-        lambda asked: None if asked.url.startswith(address) else complaints.append(asked.url),
-    )
+    tab = context.new_page()
+    complaints = complaints_of(tab, lambda url: url.startswith(address))
     tab.goto("/index.html")
     yield tab
     context.close()
@@ -238,7 +228,6 @@ SEARCHES = {
 
 
 @needs_browser
-@needs_browser
 def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
     for question, clicks, answer in CLICKS:
         with subtests.test(question=question):
@@ -262,9 +251,6 @@ PAGES = ["index", "use", "gallery", "papers/song2016", "methods/ant_colony"]
 
 @needs_browser
 def test_pages_fit_their_width_and_pass_axe(tab, subtests):
-    from axe_playwright_python.sync_playwright import Axe
-
-    rules = ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]
     for page in PAGES:
         with subtests.test(page=page):
             tab.goto(f"/{page}.html")
@@ -272,12 +258,7 @@ def test_pages_fit_their_width_and_pass_axe(tab, subtests):
             assert tab.evaluate("document.documentElement.scrollWidth") <= width
             if width < WIDTHS[0] and page != "index":
                 continue  # what a narrow window has of its own is on every page
-            found = (
-                Axe().run(tab, options={"runOnly": rules, "preload": False}).response["violations"]
-            )
-            assert [
-                (each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found
-            ] == []
+            assert violations(tab, preload=False) == []
 
 
 def test_a_method_has_one_value_on_each_family_wherever_it_stands(site, papers):

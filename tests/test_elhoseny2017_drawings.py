@@ -3,23 +3,19 @@ draw.
 """
 
 import math
-from pathlib import Path as File
 
 import numpy as np
-import pandas as pd
 import pytest
+from fields import field_of
 from studies import drawing as drawn
-from studies import study
+from studies import published, study
 
 from bezierplan.geometry import cell_length
 from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
 from bezierplan.study import captions, runs_behind
-from bezierplan.workspaces import random_field
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path
 
-FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
-PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+PUBLISHED = published("elhoseny2017")
 
 
 def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
@@ -38,9 +34,7 @@ def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
 
 
 def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
-    empty = random_field.from_circles(
-        Circles((0, 40, 0, 40), np.empty((0, 2)), np.empty(0), "cell")
-    )
+    empty = field_of(40)
     assert cell_length.length4(
         Path("polyline", np.array([[0.0, 0], [40, 40]])), empty
     ) == elhoseny2017.estimate_length(40, 0.025, 0)

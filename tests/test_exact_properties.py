@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fields import BENCHMARK_MAPS, CELLS
+from fields import BENCHMARK_MAPS, CELLS, pieces_of
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -311,23 +311,6 @@ def mapped_points(points, flip):
     return points[..., ::-1] if flip == "diagonal" else points * (-1, 1) + (SIZE, 0)
 
 
-def moved(workspace, by):
-    """A workspace of circles or polygons, shifted."""
-    left, right, bottom, top = workspace.bounds
-    bounds = (left + by[0], right + by[0], bottom + by[1], top + by[1])
-    if isinstance(workspace, Circles):
-        return Circles(bounds, workspace.centres + by, workspace.radii, "m")
-    return Polygons(
-        bounds,
-        tuple(tuple(ring + by for ring in obstacle) for obstacle in workspace.obstacles),
-        "m",
-    )
-
-
-def pieces_along(bound):
-    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
-
-
 @given(PROBLEMS)
 def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
     bound = shortest_path(problem)
@@ -339,7 +322,7 @@ def test_a_shortest_path_is_free_and_the_straight_line_if_that_is(problem):
         assert bound.length > straight
     assert least_length(bound) <= bound.length
     if bound.length < math.inf:
-        assert check(pieces_along(bound), blocked).feasible
+        assert check(pieces_of(bound), blocked).feasible
 
 
 @given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]))
@@ -352,24 +335,6 @@ def test_mirroring(problem, pieces, flip):
     assert shortest_path(mirrored).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
     found = check(pieces, build_region(problem.workspace))
     assert_same_check(check(mapped_points(pieces, flip), build_region(mirrored.workspace)), found)
-
-
-@given(
-    st.builds(
-        Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE
-    ),
-    paths(),
-)
-def test_shifting(problem, pieces):
-    by = np.array([16.0, -32.0])
-    shifted = Problem(
-        "", moved(problem.workspace, by), *(tuple(by + p) for p in (problem.start, problem.target))
-    )
-    assert shortest_path(shifted).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
-    assert_same_check(
-        check(pieces + by, build_region(shifted.workspace)),
-        check(pieces, build_region(problem.workspace)),
-    )
 
 
 def assert_same_check(a, b):
@@ -396,27 +361,6 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     assert_same_check(
         check(pieces, build_region(squares))._replace(collision_at=found.collision_at), found
     )
-
-
-def regular(circle, corners, shape):
-    """A regular polygon inside a circle, or around it."""
-    x, y, radius = circle
-    angles = np.arange(corners) * math.tau / corners
-    reach = radius if shape == "inside" else radius / math.cos(math.pi / corners)
-    return np.array([x, y]) + reach * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-@given(circle_workspaces(), PLACE, PLACE)
-def test_circles_lie_between_polygons_inside_and_around_them(circles, start, target):
-    table = np.column_stack([circles.centres, circles.radii])
-    lengths = []
-    for shape in ("inside", "around"):
-        rings = tuple((regular(circle, 60, shape),) for circle in table)
-        lengths.append(
-            shortest_path(Problem("", Polygons(circles.bounds, rings, "m"), start, target)).length
-        )
-    length = shortest_path(Problem("", circles, start, target)).length
-    assert lengths[0] * (1 - 1e-9) <= length <= lengths[1] * (1 + 1e-9)
 
 
 def elevated(piece, times):
@@ -477,7 +421,7 @@ def test_lattice_centre_and_any_angle_paths(grid, start, target):
     blocked = build_region(grid)
     for bound in bounds:
         if len(bound.points) > 1:
-            found = check(pieces_along(bound), blocked)
+            found = check(pieces_of(bound), blocked)
             assert found.feasible
             assert found.intervals <= 64 + len(bound.points)
     lengths = [bound.length for bound in bounds]

@@ -11,7 +11,6 @@ from studies import planned
 
 from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.planners import grid_genetic
-from bezierplan.planners.parts.cell_paths import cut_loops
 
 plan = partial(planned, "elhoseny2017", "ga")
 
@@ -37,18 +36,8 @@ def test_paths_are_free_and_cost_what_is_said(number):
         == cell_length.length4(found.path, grid)
         == cell_length.length8(found.path, grid)
     )
-    assert least(problem) <= found.objective <= 1.03 * least(problem)
+    assert least(problem) <= found.objective <= 1.01 * least(problem)
     assert found.evaluations == 60 * 81
-
-
-def test_paths_are_next_to_the_cheapest_ones():
-    problems = [drawn(number) for number in range(12)]
-    first, final = (
-        np.mean([plan(each, generations=count).objective / least(each) - 1 for each in problems])
-        for count in (0, 80)
-    )
-    assert final < 0.01
-    assert final < 0.5 * first
 
 
 def test_a_diagonal_step_may_pass_between_two_occupied_cells():
@@ -91,21 +80,6 @@ def is_path(cells, walls, columns):
     row, column = np.divmod(cells, columns)
     steps = np.maximum(abs(np.diff(row)), abs(np.diff(column)))
     return bool((steps == 1).all() and not walls[cells].any())
-
-
-def test_loops_are_cut_from_the_last_visit_on():
-    rng = np.random.default_rng(0)
-    marks = np.zeros(30, dtype=np.int64)
-    for _ in range(100):
-        walk = rng.integers(0, 30, 60)
-        expected, k = [], 0
-        while k < len(walk):
-            expected.append(walk[k])
-            k = max(np.flatnonzero(walk == walk[k])) + 1
-        cut = walk.copy()
-        count = cut_loops(cut, marks)
-        assert cut[:count].tolist() == expected
-        assert len(set(expected)) == count
 
 
 @pytest.mark.filterwarnings("ignore::numba.NumbaPendingDeprecationWarning")

@@ -5,7 +5,6 @@ subset holds.
 import os
 import re
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from docutils.core import publish_parts
@@ -90,15 +89,6 @@ def test_files_appear_when_all_are_written(tmp_path):
             Path(part).write_text("x")
             assert not list(tmp_path.glob("*.csv"))
     assert sorted(os.listdir(tmp_path)) == [".part-another_one.csv-killed", "one.csv", "two.csv"]
-
-
-def test_failed_job_leaves_no_file(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(log, "end_with_parent", lambda: None)
-    given = SimpleNamespace(log=[str(tmp_path / "log")], input=[], output=outputs(tmp_path, "one"))
-    with pytest.raises(SystemExit, match=r"^1$"), log.run_job(given):
-        raise ValueError("no footer")
-    assert capsys.readouterr().err.startswith("ValueError: no footer (full account: ")
-    assert not os.listdir(tmp_path)
 
 
 # What jobs are made of

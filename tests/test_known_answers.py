@@ -15,7 +15,6 @@ from test_claims import (
     SHARE,
     TREND,
     WITHIN,
-    checks_of_claims,
     judge,
     judged,
     sample,
@@ -157,17 +156,6 @@ def test_a_sentence_about_extremes_holds_in_19_of_20_draws(share, expected):
     assert effects.mark_share(share) == expected
 
 
-@pytest.mark.parametrize(("runs", "known"), [(100, True), (99, False)])
-def test_ten_times_the_paper_s_runs_tell_a_chance(runs, known):
-    values = np.stack([sample("a", n=runs), sample("b", n=runs)], axis=1)
-    terms, printed = effects.Terms("a", "lower than", "b"), np.full(2, np.nan)
-    compared = effects.Contrast(
-        terms, (), ("a", "b"), {"": values}, printed, 10, boolean=False, paired=False
-    )
-    check = checks_of_claims.check_of(LOWER | {"statistic": "min"})
-    assert effects.measure_effect(check, compared, "")[0].chance_known == known
-
-
 def test_p_and_interval_of_draws():
     draws = np.repeat([-1.0, 0.0, 1.0], [2, 1, 97])
     assert effects.compute_p(draws) == pytest.approx(2 * 3 / 100)
@@ -275,7 +263,7 @@ def test_times_of_plans_after_the_first():
     assert found == pytest.approx((0.325, 0.585, 0.6, 1))
 
 
-@pytest.mark.parametrize("beyond", [0.25, 1e-3])
+@pytest.mark.parametrize("beyond", [0.25, 1e-3, 2e-9])
 @pytest.mark.parametrize("turned", range(4))
 def test_a_drive_out_of_the_field_is_as_deep_as_it_is_far_out(beyond, turned):
     field = (0.0, 20.0, 0.0, 20.0)
@@ -285,7 +273,7 @@ def test_a_drive_out_of_the_field_is_as_deep_as_it_is_far_out(beyond, turned):
     for _ in range(turned):
         points = np.stack([20.0 - points[:, 1], points[:, 0]], axis=1)
     verdict = motion_check.check(Motion(points, np.array([0.0, 19.0 + beyond, 40.0])), world)
-    assert verdict.depth == pytest.approx(beyond)
+    assert verdict.depth == pytest.approx(beyond, rel=1e-5)
     assert verdict.collision_at == pytest.approx(19.0 + beyond)
 
 

@@ -117,11 +117,3 @@ def test_the_only_way_is_found(name):
     corridor = from_lines(["......"], 3.0, "unit")
     found = plan(name, Problem("test", corridor, corridor.centre(5), corridor.centre(0)))
     assert found.objective == pytest.approx(15)
-
-
-@each_variant
-def test_no_generation_leaves_the_best_of_the_first(name):
-    few = plan(name, generations=0, iterations=1)
-    assert few.objective == few.history[-1]
-    assert len(few.history) == 1
-    assert few.claimed_feasible

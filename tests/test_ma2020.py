@@ -9,7 +9,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-from studies import drawing, problem_of
+from studies import drawing, problem_of, published
 
 from bezierplan.analysis.audit import audit
 from bezierplan.geometry import checker, curves, shortest_paths
@@ -21,7 +21,7 @@ from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
 STUDY = checked.read(FOLDER / "experiments.yaml")
-PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+PUBLISHED = published("ma2020")
 problem = partial(problem_of, "ma2020")
 
 MAPS = {
@@ -50,20 +50,9 @@ def test_maps(name):
     assert shortest_paths.shortest_path(problem(name)).length == pytest.approx(shortest, abs=1e-7)
     # No two blocks touch, not even at a corner: then any two diagonal neighbours share a block's
     # row or column.
-    diagonal = (
-        grid.occupied[1:, 1:]
-        & grid.occupied[:-1, :-1]
-        & ~grid.occupied[1:, :-1]
-        & ~grid.occupied[:-1, 1:]
-    )
-    other = (
-        grid.occupied[1:, :-1]
-        & grid.occupied[:-1, 1:]
-        & ~grid.occupied[1:, 1:]
-        & ~grid.occupied[:-1, :-1]
-    )
-    assert not diagonal.any()
-    assert not other.any()
+    for cells in (grid.occupied, grid.occupied[:, ::-1]):
+        apart = cells[1:, 1:] & cells[:-1, :-1] & ~cells[1:, :-1] & ~cells[:-1, 1:]
+        assert not apart.any()
 
 
 # Free control points of the shortest curves found.

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from test_workspace_files import closed, geojson
 
 import bezierplan as bp
 from bezierplan.workspaces import files, robot
@@ -128,25 +129,20 @@ def test_an_image_without_a_yaml_file(tmp_path):
         bp.read_map(tmp_path / "nowhere.png", resolution=1.0)
 
 
-def courtyard(border):
-    """Two walls, as GeoJSON, in a room of 20 x 10 m, or without roles."""
-    room = [(0, 0), (20, 0), (20, 10), (0, 10)]
-    walls = [[(8, 0), (9, 0), (9, 7), (8, 7)], [(14, 3), (15, 3), (15, 10), (14, 10)]]
-    features = [
-        {
-            "properties": {"role": "border"} if ring is room else None,
-            "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
-        }
-        for ring in ([room] if border else []) + walls
-    ]
-    return json.dumps({"type": "FeatureCollection", "features": features})
+# Two walls, and a room of 20 x 10 m.
+WALLS = [
+    [closed((8, 0), (9, 0), (9, 7), (8, 7))],
+    [closed((14, 3), (15, 3), (15, 10), (14, 10))],
+]
+ROOM = closed((0, 0), (20, 0), (20, 10), (0, 10))
 
 
 def test_a_margin_is_for_files_without_a_border(tmp_path):
-    (tmp_path / "court.geojson").write_text(courtyard(border=False))
+    court = json.dumps({"type": "MultiPolygon", "coordinates": WALLS})
+    (tmp_path / "court.geojson").write_text(court)
     assert bp.read_map(tmp_path / "court.geojson", margin=2).bounds == (6, 17, -2, 12)
     assert bp.read_map(tmp_path / "court.geojson", margin=2, cell=0.5).bounds[0] == 5.75
-    (tmp_path / "room.geojson").write_text(courtyard(border=True))
+    (tmp_path / "room.geojson").write_text(geojson(*WALLS, border=ROOM))
     for file, options, told in (
         (
             "court.geojson",
@@ -176,6 +172,16 @@ ROS_FAULTS = {
     "mode": (("negate: 0", "negate: 0\nmode: Raw"), "mode: Raw: unknown; did you mean raw"),
     "misspelt": (("negate: 0", "occupied_threshold: 1"), "occupied_threshold: unknown key; did"),
     "no mapping": ((YAML, "just a word\n"), "'just a word': expected a mapping with image"),
+    "an image elsewhere": (("room.png", "/etc/passwd"), "image: /etc/passwd: no such file in"),
+    "an image that is text": (("room.png", "room.yaml"), ".*cannot be read as an image"),
+    "a resolution twice": (
+        ("negate: 0", "resolution: 1"),
+        "room.yaml: line 4: resolution: this key",
+    ),
+    "a tag": (
+        ("negate: 0", "other: !!python/name:os.system"),
+        "room.yaml: line 4: could not determine a constructor for the tag",
+    ),
 }
 
 

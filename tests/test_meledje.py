@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 from panels import options_of
 from studies import drawing as drawn
-from studies import problem_of, study
+from studies import problem_of, published, study
 
 from bezierplan.figures.panels import drawing
 from bezierplan.geometry import shortest_paths
@@ -40,7 +40,7 @@ YARD = File(__file__).parent / "data" / "yard"
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
 STUDY = study("meledje")
 problem = partial(problem_of, "meledje")
-PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+PUBLISHED = published("meledje")
 
 
 def workspace(name):

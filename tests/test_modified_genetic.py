@@ -8,16 +8,14 @@ from functools import partial
 
 import numpy as np
 import pytest
-from fields import assert_path_fits, drawn
+from fields import assert_path_fits, drawn, field_of
 from studies import planned, study
 
 from bezierplan.geometry import cell_length, curves
 from bezierplan.papers.elhoseny2017.functions import compute_q
 from bezierplan.planners import modified_genetic as planner
-from bezierplan.planners.parts import gene_curves, gene_lattice
+from bezierplan.planners.parts import gene_curves
 from bezierplan.planners.parts.settings import fill_settings
-from bezierplan.workspaces import random_field
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -34,10 +32,7 @@ def field(
     gene_lattice="coarse",
     point_order="index",
 ):
-    table = np.array(circles, dtype=float).reshape(-1, 3)
-    grid = random_field.from_circles(
-        Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
-    )
+    grid = field_of(side, *circles)
     ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
     return planner.build_field(grid, grid.in_cells(ends), gene_lattice, point_order)
 
@@ -127,12 +122,6 @@ def test_more_than_59_points_are_too_many():
     assert len(ones) == 60
     assert validated(ones, found, rules()) == np.inf
     assert validated(ones[:59], found, rules()) < np.inf
-
-
-def test_the_free_diagonal_costs_its_length():
-    found = field(100)
-    cost = validated(np.array([gene(50, 50)]), found, rules())
-    assert cost == pytest.approx(100 * np.sqrt(2), rel=1e-12)
 
 
 def length_of(x, y):
@@ -308,17 +297,6 @@ WALLED[3, :7] = WALLED[6, 2:] = True  # back and forth
 def maze():
     grid = Grid(WALLED, 1.0, "cell")
     return grid, planner.build_field(grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "geodesic")
-
-
-def test_points_are_joined_by_their_distance_over_free_cells():
-    """Along the maze's corridors, although the projection on the line from start to target has them
-    in another order.
-    """
-    _, maze_field = maze()
-    way = [(4, 0), (8, 2), (8, 4), (3, 4), (0, 6), (1, 8), (6, 8)]
-    genes = np.flatnonzero(np.isin(maze_field.index, [9 * x + y for x, y in way]))
-    inner = gene_lattice.build_polygon(genes, maze_field)[1:-1]
-    assert inner.tolist() == [[x + 0.5, y + 0.5] for x, y in way]
 
 
 @pytest.mark.parametrize("seed", range(3))

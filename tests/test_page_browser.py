@@ -2,6 +2,7 @@
 of scale smoke.
 """
 
+import itertools
 import os
 import re
 import shutil
@@ -58,6 +59,29 @@ def smoke():
     return SMOKE
 
 
+def complaints_of(tab, is_own):
+    """What a browser complains of from now on, and what it asks for that is not of the page."""
+    found = []
+    tab.on(
+        "console",
+        lambda message: (
+            found.append(message.text) if message.type in ("error", "warning") else None
+        ),
+    )
+    tab.on("pageerror", lambda error: found.append(str(error)))
+    tab.on("request", lambda asked: None if is_own(asked.url) else found.append(asked.url))
+    return found
+
+
+def violations(tab, **options):
+    """The rules for access that a page breaks, with the first places."""
+    from axe_playwright_python.sync_playwright import Axe
+
+    rules = ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]
+    found = Axe().run(tab, options={"runOnly": rules} | options).response["violations"]
+    return [(each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found]
+
+
 @pytest.fixture
 def visit(browser):
     """Open a file at an address, and fail at the end on any complaint of the browser and any
@@ -70,30 +94,17 @@ def visit(browser):
         context.set_default_timeout(60_000)
         contexts.append(context)
         tab = context.new_page()
-        tab.on(
-            "console",
-            lambda message: (
-                complaints.append(message.text) if message.type in ("error", "warning") else None
-            ),
-        )
-        tab.on("pageerror", lambda error: complaints.append(str(error)))
-        own = f"{file.as_uri()}"
-        tab.on(
-            "request",
-            lambda request: (
-                None
-                if request.url.startswith((own, "data:", "blob:"))
-                or "java_script_enabled" in options
-                else complaints.append(request.url)
-            ),
-        )
+        own = file.as_uri()
+        # Without scripts, figures are files of their own.
+        asked = ("file:",) if "java_script_enabled" in options else (own, "data:", "blob:")
+        complaints.append(complaints_of(tab, lambda url: url.startswith(asked)))
         tab.goto(own + (f"#{address}" if address else ""))
         return tab
 
     yield visit
     for context in contexts:
         context.close()
-    assert complaints == []
+    assert [*itertools.chain(*complaints)] == []
 
 
 WIDTHS = [1280, *([400] if os.environ.get("ALL") else [])]
@@ -108,18 +119,12 @@ def test_page_opens_without_complaint_fits_its_width_and_passes_axe(
     visit, request, name, scheme, width
 ):
     """The small page has every kind of content, so its dark colours are those of any page."""
-    from axe_playwright_python.sync_playwright import Axe
-
     file = request.getfixturevalue(name)
     tab = visit(file, viewport={"width": width, "height": 800}, color_scheme=scheme)
     opened = "document.querySelectorAll('details').forEach((part, n) => { part.open = n < %d; })"
     tab.evaluate(opened % 4)
     tab.wait_for_timeout(200)
-    found = Axe().run(tab, options={"runOnly": ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]})
-    assert [
-        (each["id"], [node["html"][:200] for node in each["nodes"][:3]])
-        for each in found.response["violations"]
-    ] == []
+    assert violations(tab) == []
     tab.evaluate(opened % 10_000)
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
 

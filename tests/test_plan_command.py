@@ -197,17 +197,21 @@ def test_a_target_that_cannot_be_reached_ends_with_status_1(capsys, tmp_path):
     assert lines["failure"] == "--target: 3.5,0.5: no free way leads there from the start"
 
 
-def test_other_kinds_of_map(capsys, tmp_path):
-    (tmp_path / "room.txt").write_text("....\n.##.\n....\n")
-    lines = planned(capsys, tmp_path / "room.txt", "--start", "0.5,1.5", "--target", "3.5,1.5")
-    assert lines["shortest path"] == "3.41421 cell"
-    pixels = np.full((3, 3), 254, dtype=np.uint8)
-    pixels[1, 1] = 0
-    Image.fromarray(pixels).save(tmp_path / "room.pgm")
-    (tmp_path / "room.yaml").write_text("image: room.pgm\nresolution: 2\norigin: [-3, -3, 0]\n")
-    ends = ["--start", "-2,0", "--target", "2,0"]
-    lines = planned(capsys, tmp_path / "room.yaml", *ends, "--settings", "{turning_radius: 0}")
-    assert lines["shortest path"] == "4.82843 m"
+def test_what_editors_and_windows_write_is_read(capsys, tmp_path):
+    """A byte order mark, blank lines at the end, line ends of Windows, suffixes in capitals, and a
+    path of another machine.
+    """
+    Image.fromarray(np.full((3, 4), 254, dtype=np.uint8)).save(tmp_path / "room.png")
+    room = "image: C:\\maps\\room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\n"
+    for name, text in {
+        "a.TXT": "....\r\n.##.\r\n....\r\n\r\n",
+        "a.geojson": (BENCHMARK_MAPS / "gaps.geojson").read_text(),
+        "a.yaml": room,
+    }.items():
+        (tmp_path / name).write_bytes(b"\xef\xbb\xbf" + text.encode())
+        ends = ["--start", "-0.9,2.5"] if name == "a.yaml" else ["--start", "0.5,2.5"]
+        found = planned(capsys, tmp_path / name, *ends, "--target", "0.9,2.5")
+        assert found["feasible"] == "yes"
 
 
 FAULTS = {
@@ -297,41 +301,29 @@ def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
     assert np.mean(middle > 250) > 0.5
 
 
-# What a planner answers, or does before it does, and the fault. The room has a wall between start
-# and target.
+# What a planner does, and the fault. The room has a wall between start and target.
 ANSWERS = {
     "elsewhere": (
         "line[1] = (1.5, 0.5)",
-        "answer",
         "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)",
     ),
-    "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
-    "an error": ("{}[1]", "answer", "line 7 of own.py: KeyError: 1"),
     "an error of two lines": (
         'raise ValueError("a\\nb")',
-        "answer",
         "line 7 of own.py: ValueError: a b",
-    ),
-    "an exit": ("raise SystemExit(0)", "answer", "line 7 of own.py: sys.exit: 0"),
-    "an empty map": (
-        "problem.workspace.occupied[:] = False",
-        "answer",
-        "line 7 of own.py: ValueError: assignment destination is read-only",
     ),
 }
 
 
 @pytest.mark.parametrize("name", ANSWERS)
 def test_answer_of_a_planner_comes_through_the_door(capsys, tmp_path, name):
-    code, answer, fault = ANSWERS[name]
+    code, fault = ANSWERS[name]
     (tmp_path / "room.txt").write_text("....\n.#..\n.#..\n")
     planner = tmp_path / "own.py"
     planner.write_text(
         "import numpy as np\nfrom bezierplan.planners import Path, Plan\n\n\n"
         "def plan(problem, rng):\n"
         f"    line = np.array([problem.start, problem.target])\n    {code}\n"
-        '    answer = Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
-        f"    return {answer}\n"
+        '    return Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
     )
     ends = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
     line = refused(capsys, tmp_path / "room.txt", *ends, "--method", planner)

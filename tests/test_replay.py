@@ -25,15 +25,6 @@ def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
         assert is_equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)
 
 
-def test_run_made_again_differs_from_another(tmp_path):
-    one, other = (
-        replay.replay(f"song2016/routes/0_15/random_search/{repeat}", STUDIES).runs.iloc[0]
-        for repeat in (0, 1)
-    )
-    assert is_equal(one, one.to_dict())
-    assert not is_equal(one, other.to_dict())
-
-
 def test_a_run_is_described_and_drawn_with_its_first_collision(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(["replay", "song2016/routes/0_15/rounded/0", "--studies", "song2016"])

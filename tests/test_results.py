@@ -138,22 +138,3 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     assert audited(table.assign(workspace="disc"), two, {}) == [False, True]
     assert audited(table.assign(problem="other"), two, {}) == [True, True]
     assert audited(table.assign(problem="elsewhere"), one, {}) == []
-
-
-@pytest.mark.parametrize(
-    ("printed", "consistent"),
-    [("8.95", True), ("8.94", False), ("8.5", False), ("9", True), ("8.9", False)],
-)
-def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent):
-    table = pd.DataFrame(
-        {
-            "problem": ["disc"],
-            "metric": "length",
-            "statistic": "min",
-            "value": [float(printed)],
-            "as_printed": [printed],
-        }
-    )
-    bounds = pd.DataFrame({"bound": [8.9549]}, index=["disc"])
-    (row,) = audit.check_lengths("t", table, bounds, {})
-    assert row["consistent"] == consistent

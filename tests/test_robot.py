@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 from PIL import Image
+from test_workspace_files import geojson
 
 import bezierplan as bp
 from bezierplan.__main__ import main
@@ -46,18 +47,7 @@ def one_wall(kind, folder):
         return folder / "wall.txt", ("--cell", "0.05", "--unit", "m")
     ring = [[0.95, 0.5], [1.05, 0.5], [1.05, 1.5], [0.95, 1.5], [0.95, 0.5]]
     frame = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]
-    shapes = [("border", frame), ("obstacle", ring)]
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"role": role},
-            "geometry": {"type": "Polygon", "coordinates": [each]},
-        }
-        for role, each in shapes
-    ]
-    (folder / "wall.geojson").write_text(
-        str({"type": "FeatureCollection", "features": features}).replace("'", '"')
-    )
+    (folder / "wall.geojson").write_text(geojson([ring], border=frame))
     return folder / "wall.geojson", ()
 
 

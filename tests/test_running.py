@@ -1,6 +1,4 @@
-"""A chunk of runs: rows in the order of conditions and repeats whatever order they were made in,
-and stable times.
-"""
+"""A chunk of runs: conditions that take turns, repeats that count as one, and stable times."""
 
 import time
 from types import ModuleType
@@ -9,7 +7,6 @@ import pytest
 from chunks import BENDS, DISC
 
 from bezierplan.analysis import results
-from bezierplan.analysis.stored_runs import format_row
 from bezierplan.running import execution, problems
 from bezierplan.running.guard import interface, worker
 
@@ -45,24 +42,6 @@ def planner(monkeypatch):
         return chunk()
 
     return put
-
-
-def test_rows_stand_in_order_and_do_not_depend_on_it(planner, monkeypatch):
-    given = planner()
-    runs, times = execution.run_chunk({"disc": DISC}, given)
-    assert runs["id"].to_pylist() == [
-        f"study/bends/disc,bend={bend}/bend/{repeat}"
-        for bend in (0.0, 1.0, 2.0)
-        for repeat in range(4, 10)
-    ]
-    assert times["id"].to_pylist() == runs["id"].to_pylist()
-    monkeypatch.setattr(
-        execution,
-        "_order",
-        lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats],
-    )
-    again, _ = execution.run_chunk({"disc": DISC}, given)
-    assert list(map(format_row, again.to_pylist())) == list(map(format_row, runs.to_pylist()))
 
 
 def test_conditions_take_turns():

@@ -87,19 +87,6 @@ def test_a_circle_is_where_step_by_step_reflection_takes_it(x, velocity, steps):
     assert found[0, 1] == 5.0
 
 
-def test_worlds_survive_their_files():
-    world = circles((3, 4, 1, 0.1, -0.2), pace=0.5)
-    again = worlds.from_json(worlds.to_json(world))
-    assert np.array_equal(again.at(7), world.at(7))
-    assert (again.pace, again.end, again.bounds) == (0.5, 100, world.bounds)
-    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["..", ".."], ["#.", ".."]))
-    changing = ChangingCells(maps, np.array([2.5]), 1.0, 9)
-    assert [
-        worlds.from_json(worlds.to_json(changing)).workspace(time).occupied.sum()
-        for time in (2.4, 2.5)
-    ] == [0, 1]
-
-
 # The exact check
 
 
@@ -406,13 +393,6 @@ def test_a_robot_checks_no_farther_than_its_horizon():
         for horizon in (math.inf, 3.0)
     )
     assert seen.replans > unseen.replans
-
-
-@pytest.mark.parametrize(("beyond", "outside"), [(1e-4, True), (2e-9, True), (0.0, False)])
-def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
-    points = np.array([[1.0, 10.0], [20.0 + beyond, 10.0], [1.0, 10.0]])
-    verdict = motion_check.check(Motion(points, np.array([0.0, 19.0, 38.0])), circles())
-    assert math.isfinite(verdict.collision_at) == outside
 
 
 @pytest.mark.parametrize(

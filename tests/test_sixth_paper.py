@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 import starts
 from studies import KEYS
+from trees import edit
 
 from bezierplan.__main__ import main
 from bezierplan.analysis.claims import kinds
@@ -50,8 +51,7 @@ def test_faults_are_found_at_once(mine, capsys):
         ),
     }
     for name, (old, new) in changed.items():
-        file = mine / name
-        file.write_text(file.read_text().replace(old, new))
+        edit(mine / name, old, new)
     with pytest.raises(SystemExit):
         main(["check-study", "mine"])
     lines = capsys.readouterr().err.splitlines()
@@ -60,8 +60,7 @@ def test_faults_are_found_at_once(mine, capsys):
     # Beside an unknown key the others are checked too.
     assert all(any(word in line for line in lines) for word in ("nam:", "rato", "replicat:")), lines
     for name, (old, new) in changed.items():
-        file = mine / name
-        file.write_text(file.read_text().replace(new, old))
+        edit(mine / name, new, old)
     main(["check-study", "mine"])
     assert "no fault" in capsys.readouterr().out
 

@@ -89,16 +89,6 @@ def test_resampled_mean_has_the_standard_error():
     assert drawn.std() == pytest.approx(values.std() / math.sqrt(20), rel=0.05)
 
 
-@pytest.mark.parametrize("name", ["mean", "median"])
-def test_interval_covers_the_truth_about_95_times_in_100(name):
-    rng = np.random.default_rng(2)
-    hits = 0
-    for repeat in range(150):
-        low, high = compute_interval(name, rng.normal(size=40), generator(f"coverage {repeat}"))
-        hits += low <= 0 <= high
-    assert 0.88 <= hits / 150 <= 0.99
-
-
 @pytest.mark.parametrize(("count", "tolerance"), [(100, 0.1), (1000, 0.01)])
 def test_both_ends_of_the_interval_of_a_mean_are_1_96_standard_errors_away(count, tolerance):
     values = np.random.default_rng(9).normal(5, 2, count)
@@ -154,15 +144,6 @@ OURS = np.random.default_rng(3).normal(100, 5, size=60)
 
 def inside(published, low_high):
     return low_high[0] <= published <= low_high[1]
-
-
-@pytest.mark.parametrize("size", [None, 1, 10, 60])
-@pytest.mark.parametrize(("name", "away"), [("mean", -100), ("mean", 100), ("median", 90)])
-def test_value_far_off_is_out_of_range_and_one_in_the_middle_in_it(name, away, size):
-    middle = float(np.median(OURS))
-    found = compute_prediction_interval(name, OURS, size, generator("middle"))
-    assert inside(middle, found)
-    assert not inside(middle + away, found)
 
 
 @pytest.mark.parametrize(("factor", "fits"), [(0.4, False), (1.0, True), (2.5, False)])

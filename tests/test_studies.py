@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 from fields import among_circles
 from studies import FOLDER as STUDIES
-from studies import KEYS, arguments, drawing, problem_of
+from studies import KEYS, arguments, drawing, problem_of, published
 from studies import study as shared
 
 from bezierplan.analysis import metrics
@@ -27,13 +27,8 @@ THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 SWARM = {name: value for name, value in THARWAT["settings"].items() if not isinstance(value, dict)}
 # Of the planner's settings.
 SAMPLES, BETA = 100, 100.0
-RANKED = ("table3", "table4", "table5", "table6")
 SEQUENCES = arguments("tharwat2018", "chaotic_sequences")
 problem = partial(problem_of, "tharwat2018")
-
-
-def published(study):
-    return {file.stem: pd.read_csv(file) for file in (STUDIES / study / "published").glob("*.csv")}
 
 
 def faults(rows):
@@ -151,12 +146,6 @@ def test_nodes_of_one_valley_are_one_minimum():
     )
 
 
-def surface_of(values):
-    side = np.linspace(-10, 10, len(values))
-    x, y = np.meshgrid(side, side, indexing="ij")
-    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "objective": values.ravel()})
-
-
 def on_maps(where):
     """A check on the experiment `maps`, as far as a function of the study asks it."""
     return SimpleNamespace(experiment="maps", where=where)
@@ -207,30 +196,6 @@ def test_landscape():
     lowest = surface[tharwat2018.find_local_minima(values).ravel()].set_index(["x", "y"]).index
     assert shown.isin(lowest).all()
     assert drawn.loc[drawn["part"] == "lowest", "objective"].item() == values.min()
-
-
-@pytest.mark.parametrize(("waves", "mark"), [(0.0, "-"), (30.0, "+")])
-def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
-    side = np.linspace(-10, 10, tharwat2018.GRID)
-    values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
-    monkeypatch.setattr(tharwat2018, "compute_landscape", lambda *given: surface_of(values))
-    runs = pd.DataFrame(
-        [
-            {
-                "planner": "chaotic_pso",
-                "drew": True,
-                "problem": "p",
-                "workspace": "p",
-                "samples": SAMPLES,
-                "beta": BETA,
-            }
-        ]
-    )
-    answer = tharwat2018.bowl_with_local_minima(
-        on_maps({}), {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {}
-    )
-    assert answer[0] == mark
-    assert answer[1] > 0.5
 
 
 # Round the circles of the workspace `equal`: above all, below all, and between them.
@@ -387,16 +352,6 @@ def test_audit_sees_a_changed_number(table, metric):
     changed = numbers[table].copy()
     changed.loc[changed.index[changed["metric"] == metric][-1], "value"] = 7.0
     assert len(faults(rules.check_rules(numbers | {table: changed})) - before) > 0
-
-
-def test_published_numbers_of_tharwat2018():
-    tables = published("tharwat2018")
-    assert [len(tables[name]) for name in RANKED] == [3 * rows for rows in (8, 8, 5, 10)]
-    best = tables["table4"].query("metric == 'objective'").set_index("method")["value"]
-    assert (best["cpso2_gauss"], best["cpso2_singer"]) == (14.90, 10.21)
-    for name in RANKED:
-        assert set(tables[name]["method"]) <= THARWAT["methods"].keys()
-        assert (tables[name]["n"] == 10).all()
 
 
 def test_methods_of_tharwat2018():

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 import tables_of_keys as keys
 from studies import KEYS, study
+from trees import edit
 
 from bezierplan.places import TREE
 from bezierplan.running import execution
@@ -26,29 +27,17 @@ def folder(tmp_path):
 EXPERIMENTS = "experiments.yaml"
 
 
-def test_unknown_study_is_told_with_the_closest_name():
-    with pytest.raises(Fault, match=r"song2061.*did you mean song2016\?"):
-        loading.read_config({"studies": ["song2061"]})
-
-
-def test_unknown_key_of_the_configuration_is_told():
-    with pytest.raises(Fault, match=r"studys: unknown key; did you mean studies\?"):
-        loading.read_config({"studys": ["song2016"]})
-
-
 def test_the_same_study_twice_is_told():
     with pytest.raises(Fault, match="name song2016 is there already"):
         loading.load([SONG, SONG])
 
 
 def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(folder):
-    file = folder / EXPERIMENTS
     place = "\n  0_255: {workspace: figure2,"
-    assert place in file.read_text()
-    file.write_text(
-        file.read_text().replace(
-            place, place + " settings: {genes: 5, samples: 7, generations: 9},", 1
-        )
+    edit(
+        folder / EXPERIMENTS,
+        place,
+        f"{place} settings: {{genes: 5, samples: 7, generations: 9}},",
     )
     study = loading.load([folder])["song2016"]
     job = jobs.build_chunk(study, "routes", "smooth", "smoke", 0)
@@ -101,11 +90,8 @@ def test_tables_of_keys_are_those_of_the_models():
 
 
 def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(folder):
-    file = folder / EXPERIMENTS
-    text = file.read_text().replace(
-        "  genes: 6", "  binary_genetic: {generations: 7, samples: 7}\n  genes: 6", 1
-    )
-    file.write_text(text)
+    own = "  binary_genetic: {generations: 7, samples: 7}\n  genes: 6"
+    edit(folder / EXPERIMENTS, "  genes: 6", own)
     study = loading.load([folder])["song2016"]
     resolved = study.resolve_settings("smooth")
     assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 501, 6)
