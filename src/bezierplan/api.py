@@ -26,7 +26,7 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running.answer import read_path
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import check_all, check_known, suggest_closest
+from bezierplan.schema.checked import check_all, check_known, describe_known
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
@@ -757,7 +757,7 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
     known = [f"{study}/{each}" for study in studies for each in _read_study(study).methods]
     if f"{key}/{name}" not in known:
         known = known or [*_list_planners(), *list_planners()]
-        raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
+        raise ValueError(f"method: {method}: unknown{describe_known(method, known)}")
     return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
 

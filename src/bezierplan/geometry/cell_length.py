@@ -89,7 +89,7 @@ def cut(pieces: np.ndarray, points: int) -> None:
         step //= 2
 
 
-def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def sample_curve(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
     degree + 1, 2).
 
@@ -229,7 +229,7 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
     rows, columns = occupied.shape
     (x0, y0), (x1, y1) = start, end
     column, row = math.floor(x0), math.floor(y0)
-    last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
+    last_column, last_row = _find_last_cell(x0, x1), _find_last_cell(y0, y1)
     if (
         min(column, last_column) < 0
         or max(column, last_column) >= columns
@@ -260,7 +260,7 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
 
 
 @allocation_free
-def _last_cell(first: float, last: float) -> int:
+def _find_last_cell(first: float, last: float) -> int:
     """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
@@ -318,7 +318,7 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 def sample_in_cells(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a path, in cells, less than a cell apart."""
-    return walk(grid.in_cells(curves.bezier_pieces(path)))
+    return sample_curve(grid.in_cells(curves.bezier_pieces(path)))
 
 
 def length_by_points(path: Path, grid: Grid) -> float:

@@ -139,7 +139,7 @@ class KernelCache(FunctionCache):
 
 
 @cache
-def _can_be_written(folder: Path) -> bool:
+def _prepare_folder(folder: Path) -> bool:
     """Return whether files can be created in a folder, which is made if necessary."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
@@ -163,7 +163,7 @@ class Kernel(CPUDispatcher):
         """Keep compiled forms of this kernel."""
         state = name_state(self.py_func.__module__, inspect.getfile(self.py_func))
         for folder in FOLDERS:
-            if _can_be_written(folder / state):
+            if _prepare_folder(folder / state):
                 self._cache = KernelCache(self.py_func, folder / state)
                 return
 
@@ -236,7 +236,7 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
         until = time.monotonic() + (PATIENCE if locks else math.inf)
-        while not _is_locked(lock) and time.monotonic() < until:
+        while not _try_lock(lock) and time.monotonic() < until:
             time.sleep(LOOK)
         locks.append(folder)
         try:
@@ -245,7 +245,7 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
             locks.pop()
 
 
-def _is_locked(lock: Any) -> bool:
+def _try_lock(lock: Any) -> bool:
     """Return whether this process now holds the lock on a file, or the file cannot be locked at
     all.
     """

@@ -12,7 +12,7 @@ from bezierplan.figures.caption import (
 )
 from bezierplan.study.definition import Study
 from bezierplan.study.evidence import read_kept
-from bezierplan.study.runs_behind import count_experiment_runs, find_runs_behind
+from bezierplan.study.runs_behind import count_experiment_runs, describe_runs_behind
 
 
 def build_caption(study: Study, artefact: str, scale: str) -> Caption:
@@ -38,7 +38,7 @@ def build_caption(study: Study, artefact: str, scale: str) -> Caption:
         remark = f"In the paper: {study.layout[artefact].says}"
     elif scale == "full" and artefact in study.find_tables_of_runs():
         remark = _describe_means(study, artefact)
-    behind = find_runs_behind(study, artefact, scale)
+    behind = describe_runs_behind(study, artefact, scale)
     return Caption(study.artefact(artefact).title, findings, remark, behind)
 
 

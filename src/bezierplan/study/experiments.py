@@ -398,7 +398,7 @@ class Experiments(ExperimentsFile):
         """Return the kind of workspace that planners see in a problem."""
         workspace = self.workspace_of(problem)
         # Planners see what is drawn, or what a file of another format is converted to.
-        return workspace.draws or workspace.gives or workspace.kind
+        return workspace.drawn_kind or workspace.given_kind or workspace.kind
 
     def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
         """Return the descriptions, as plain values, of an experiment's problems that have a repeat;

@@ -31,7 +31,7 @@ from bezierplan.study import alternatives
 from bezierplan.study.captions import build_caption
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import build_descriptions, build_problems_job
-from bezierplan.study.runs_behind import list_methods, list_parts
+from bezierplan.study.runs_behind import list_methods, list_parts_with_runs
 
 Studies = dict[str, Study]
 
@@ -191,7 +191,7 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
-    for part in list_parts(spec):
+    for part in list_parts_with_runs(spec):
         content = study.experiments[part.experiment]
         shown |= {*convert_to_list(part.where.get("method", content.methods)), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
@@ -357,7 +357,7 @@ def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
     """Return how each part of a table or figure selects and shows its runs."""
     return [
         Display(**{name: each for name, each in part.plain().items() if name in list_keys(Display)})
-        for part in list_parts(artefact)
+        for part in list_parts_with_runs(artefact)
     ]
 
 

@@ -8,7 +8,7 @@ from bezierplan.schema.model import convert_to_list
 from bezierplan.study.definition import Study
 
 
-def list_parts(artefact: TableEntry | Figure) -> list[Any]:
+def list_parts_with_runs(artefact: TableEntry | Figure) -> list[Any]:
     """Return the parts of a table or figure that show runs: the table itself, or some panels."""
     parts = getattr(artefact, "panels", [artefact])
     return [part for part in parts if getattr(part, "experiment", None)]
@@ -28,7 +28,7 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
             )
         return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
-    for panel in list_parts(study.artefact(artefact)):
+    for panel in list_parts_with_runs(study.artefact(artefact)):
         methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))
         needed.setdefault(panel.experiment, set()).update(convert_to_list(methods))
     return {
@@ -37,9 +37,9 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
     }
 
 
-def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
+def describe_runs_behind(study: Study, artefact: str, scale: str) -> str:
     """Return the runs of each method behind a table or figure."""
-    parts, told = list_parts(study.artefact(artefact)), []
+    parts, told = list_parts_with_runs(study.artefact(artefact)), []
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]

@@ -35,10 +35,10 @@ def read_printed(text: str) -> Printed:
     """Read a number with the digits that are printed, such as `7.30`. Raises ValueError if the text
     is no number.
     """
-    return Printed(Fraction(text), Fraction(10) ** -count_decimals(text) / 2)
+    return Printed(Fraction(text), Fraction(10) ** -find_last_place(text) / 2)
 
 
-def count_decimals(text: str) -> int:
+def find_last_place(text: str) -> int:
     """Count the digits after the point. In `1.5e3` the last one stands for hundreds, which counts
     as -2.
     """

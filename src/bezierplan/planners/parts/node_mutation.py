@@ -53,7 +53,9 @@ def mutate(
         return _mutate_as_reference_21(rng, path, ground, rules, neighbours)
     k = 0
     if rules.mutation == Mutation.proposed:
-        k = _draw_blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
+        k = _draw_place_at_obstacle(
+            rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour
+        )
         if k == 0 and rules.without_obstacle == WithoutObstacle.none:
             return 0
     if k == 0:
@@ -75,7 +77,7 @@ def _mutate_until_feasible(rng, path, alleles, ground):
 
 
 @allocation_free
-def _draw_blocked_node(rng, path, ground, beside_obstacle):
+def _draw_place_at_obstacle(rng, path, ground, beside_obstacle):
     """Draw an inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
     count = 0
     for k in range(1, len(path) - 1):

@@ -22,7 +22,7 @@ from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain_values, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, suggest_closest
+from bezierplan.schema.checked import Fault, describe_known
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -82,7 +82,7 @@ def check_planner(planner: str, settings: Settings) -> Iterator[ContractFinding]
     if not is_file(planner) and planner not in list_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
-            f".py{suggest_closest(planner, list_planners())}"
+            f".py{describe_known(planner, list_planners())}"
         )
     module = interface.load_planner_module(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")

@@ -137,10 +137,10 @@ class Forks:
         )
         name = file.get_path_or_uri(secret_free=True)
         work = Snakemake(*(job[each] for each in names))
-        if not self.succeeds(name, source, work, job["bench_record"]):
+        if not self.run_in_fork(name, source, work, job["bench_record"]):
             raise subprocess.CalledProcessError(1, name)
 
-    def succeeds(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
+    def run_in_fork(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
         """Run a script in a fork, in this process's folder, and return whether it came to its end.
 
         snakemake: the object that scripts know by this name. benchmark: Snakemake's record of time

@@ -39,7 +39,7 @@ class Change(Model):
 class Options(World):
     """Keys of a workspace of kind `changing_cells`."""
 
-    gives: ClassVar[str] = "grid"
+    given_kind: ClassVar[str] = "grid"
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")

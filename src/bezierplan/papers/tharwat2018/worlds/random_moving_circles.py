@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Options(RandomMoving):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "circles"
+    drawn_kind: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
     radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
