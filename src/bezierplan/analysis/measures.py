@@ -93,8 +93,8 @@ def gap(runs: pd.DataFrame, problems: Problems) -> pd.Series:
 
 
 def is_near_shortest(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
-    """Return where (n,) the certified checker accepts a path that is at most this share longer than
-    the exact shortest one.
+    """Tell which runs (n,) have a path that the certified checker accepts and that is at most this
+    share longer than the exact shortest one.
     """
     return (certified_length(runs, problems) <= (1 + share) * runs["bound"]).to_numpy()
 

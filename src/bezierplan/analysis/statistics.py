@@ -407,8 +407,8 @@ def compute_expanded_tail(n: int) -> float:
 
 
 def _spread_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of
-    `size` others may lie, by evenly spaced chance.
+    """Return the gaps between our values (n,) in which the least (or largest) of `size` others lies
+    at evenly spaced probabilities: lower and upper ends (DRAWS,).
 
     Resampling never goes beyond our own extremes, whereas half of all experiments of our size do.
     All orders of our values and the others are equally likely, which gives the probability of each

@@ -109,7 +109,7 @@ def _read_paragraph(thing: Any) -> str:
 
 
 def _read_paragraphs(things: Mapping[str, Any]) -> Rows:
-    """Return name -> the first paragraph about it."""
+    """Yield each name with the first paragraph about its thing."""
     return ((name, _read_paragraph(each)) for name, each in things.items())
 
 

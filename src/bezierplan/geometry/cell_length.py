@@ -161,8 +161,8 @@ def write_samples(
 
 @allocation_free
 def _find_cell(coordinate: float, before: int) -> int:
-    """Return the column or row of a coordinate; near a grid line, the previous sample's if
-    close.
+    """Return the column or row of a coordinate; on a grid line, keep that of the sample before if
+    it borders the line.
     """
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
@@ -183,7 +183,9 @@ def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @allocation_free
 def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> int:
-    """Write the `list_touched_cells` of a polyline (n,), at most 2 n, and return their number."""
+    """Write the columns and rows of the cells that a polyline (n,) touches, in order; return how
+    many there are, at most 2 n.
+    """
     column, row = math.floor(x[0]), math.floor(y[0])
     columns[0], rows[0] = column, row
     count = 1
@@ -261,7 +263,9 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
 
 @allocation_free
 def _find_last_cell(first: float, last: float) -> int:
-    """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
+    """Return the column or row in which a leg ends; if it ends on a grid line, the one that it
+    comes from.
+    """
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
     return min(math.floor(first), math.floor(last + _ON_LINE))

@@ -99,12 +99,14 @@ class _File(IndexDataCacheFile):
     """
 
     def _load_index(self) -> dict:
+        """Read the index, empty if it is damaged."""
         try:
             return super()._load_index()
         except Exception:  # a damaged pickle raises almost anything
             return {}
 
     def load(self, key: Any) -> Any:
+        """Load a kernel, or return None if its file is damaged."""
         try:
             return super().load(key)
         except Exception:
@@ -140,7 +142,7 @@ class KernelCache(FunctionCache):
 
 @cache
 def _prepare_folder(folder: Path) -> bool:
-    """Return whether files can be created in a folder, which is made if necessary."""
+    """Make a folder if necessary, and return whether files can be created in it."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         # numba's own test: a folder can have the mode of one that can be written, and be none.
@@ -246,9 +248,7 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
 
 
 def _try_lock(lock: Any) -> bool:
-    """Return whether this process now holds the lock on a file, or the file cannot be locked at
-    all.
-    """
+    """Try to lock a file without waiting; return False only if another process holds the lock."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -470,7 +470,7 @@ def _pull(turns, radii, patient):
 
 @allocation_free
 def _find_neighbour(centres, side, k):
-    """Find the nearer neighbour of a circle to the same side, or return 0."""
+    """Return the number of the nearer neighbour of circle `k` on its side, 0 if it has none."""
     nearest, gap = 0, np.inf
     for j in (k - 1, k + 1):
         if side[j] == side[k]:

@@ -123,8 +123,8 @@ def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None
 
 
 def describe_known(word: Any, names: Iterable[Any]) -> str:
-    """Return `; did you mean ...?` with the known words, or of many the most similar, to end a
-    sentence about an unknown one.
+    """Return the end of a message about an unknown word: the closest known word, if one is close,
+    and the known words (of more than 40, the ten closest).
     """
     words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)

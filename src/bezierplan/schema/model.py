@@ -260,7 +260,7 @@ def build_number_type(**limits: float | None) -> Any:
 
 
 def limit_whole(low: int, high: int) -> Any:
-    """Return the limits of a whole number, as a field."""
+    """Return a pydantic field for a whole number from `low` to `high`."""
     return Field(ge=low, le=high)
 
 

@@ -87,8 +87,8 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
 def _list_problems(
     study: Study, experiment: str, method: str, scale: str, first: int
 ) -> dict[str, dict]:
-    """Return an experiment's problems that have the repeat `first`, name -> place. Each has those
-    of its settings that the method leaves open.
+    """Return the places of an experiment's problems that have the repeat `first`, by name. Each has
+    those of its settings that the method leaves open.
     """
     accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings.keys()
     met = {}
@@ -102,8 +102,8 @@ def _list_problems(
 
 
 def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range:
-    """Return the numbers of the chunks that hold a method's repeats in an experiment at a scale,
-    under the condition with the most. A method that draws no random numbers has one.
+    """Return the numbers of a method's chunks in an experiment at a scale: enough for its condition
+    with the most repeats. A method that draws no random numbers has one.
     """
     content = study.experiments[experiment]
     if not study.draws(method):
@@ -121,7 +121,7 @@ def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range
 def count_chunks(
     study: Study, experiment: str, methods: Iterable[str], scale: str
 ) -> dict[str, int]:
-    """Return method -> its number of chunks, for some methods of an experiment."""
+    """Return the number of chunks of some methods of an experiment, by method."""
     return {method: len(list_chunks(study, experiment, method, scale)) for method in methods}
 
 
@@ -167,7 +167,9 @@ def group_methods(
 
 
 def find_results(study: Study, artefact: str, scale: str) -> Shows:
-    """Return the results that a table or figure shows: experiment -> method -> number of chunks."""
+    """Return the results that a table or figure shows: by experiment and method, the number of
+    chunks.
+    """
     return {
         name: count_chunks(study, name, methods, scale)
         for name, methods in list_methods(study, artefact).items()
@@ -175,7 +177,7 @@ def find_results(study: Study, artefact: str, scale: str) -> Shows:
 
 
 def choose_looks(study: Study) -> dict[str, str]:
-    """Return method -> the name of its look in each figure."""
+    """Return the name of each method's look in all figures, by method."""
     return style.choose_looks(
         {method: study.planner(method) for method in study.methods}, study.looks
     )

@@ -62,8 +62,8 @@ def read_config(config: Mapping[str, Any]) -> Folders:
 
 
 def read_page_studies(scale_folder: str | Path) -> dict[str, str]:
-    """Return the studies that the page of a scale shows and that have results there: name -> the
-    word that names it in a configuration. Without a page the result is empty.
+    """Return the studies that the page of a scale shows and that have results there: by name, the
+    word that names each in a configuration. Without a page the result is empty.
 
     scale_folder: the folder of the scale.
     """

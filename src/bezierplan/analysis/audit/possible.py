@@ -39,9 +39,7 @@ def read_printed(text: str) -> Printed:
 
 
 def find_last_place(text: str) -> int:
-    """Count the digits after the point. In `1.5e3` the last one stands for hundreds, which counts
-    as -2.
-    """
+    """Return the decimal place of a printed number's last digit: 2 for `7.30`, -2 for `1.5e3`."""
     digits, _, power = text.strip().lower().partition("e")
     return len(digits.partition(".")[2]) - int(power or 0)
 

@@ -80,7 +80,7 @@ def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
 
 
 def _set_p_by_mark(finding: Finding) -> Finding:
-    """Give a finding whose mark does not follow from p the p of the same mark."""
+    """Set p and side of a finding with a mark of its own; return any other unchanged."""
     if not finding.mark:
         return finding
     toward = {"+": 1, "-": -1}.get(finding.mark, 0)

@@ -259,7 +259,9 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
 
 
 def _list_points_by_part(path: Path, control: str) -> dict[str, np.ndarray]:
-    """Return the points (n, 2) of a path by the part that they form."""
+    """Return the points (n, 2) to draw of a path, by part: its curve and, as `control` says, its
+    control points and hull.
+    """
     import shapely
 
     places = {}

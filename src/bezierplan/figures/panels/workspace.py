@@ -113,7 +113,7 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
 
 
 def list_workspace_rows(workspace: Workspace) -> pd.DataFrame:
-    """Return the rows of a workspace itself, as `data` does, but no numbers."""
+    """Return the rows of a workspace, as `data` does, but without numbers."""
     shapes, drawn = workspace, []
     if isinstance(workspace, Grid):
         shapes = workspace.shapes

@@ -344,9 +344,10 @@ def join_through_random_cell(rng, lattice, first, last, part, marks):
 
 @allocation_free
 def forage(rng, lattice, first, last, tries, part, marks):
-    """Forage from one cell until another is reached.
+    """Walk like a foraging fish from one cell until another is reached, write the cells to `part`
+    and return how many there are.
 
-    Returns the part's size, or 0 if the walk ends early or would exceed the part.
+    It is 0 if the walk ends early or would exceed the part.
     """
     part[0] = first
     marks[first] = 1

@@ -82,8 +82,8 @@ def read_traits(planner: str) -> Traits:
 
 @cache
 def _read_traits_of_file(planner: str) -> Traits:
-    """Return the traits of a planner's file. Raises PlannerFailure unless it has the interface of
-    one.
+    """Import a planner's file in another process, and return its traits. Raises PlannerFailure
+    unless it has the interface of one.
     """
     file = str(Path(planner).resolve())
     work = partial(describe_in_process, planner=file)

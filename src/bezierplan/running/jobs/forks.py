@@ -76,7 +76,7 @@ class Forks:
 
     @property
     def process(self) -> int | None:
-        """The number of the process that is forked; None before the first."""
+        """Return the number of the process that is forked; None before the first."""
         return self._process and self._process.pid
 
     def start(self) -> None:
@@ -141,7 +141,7 @@ class Forks:
             raise subprocess.CalledProcessError(1, name)
 
     def run_in_fork(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
-        """Run a script in a fork, in this process's folder, and return whether it came to its end.
+        """Run a script in a fork, in this process's folder, and return whether its status was 0.
 
         snakemake: the object that scripts know by this name. benchmark: Snakemake's record of time
         and memory. If the fork ends without a report of its own, the log and stderr get a line that

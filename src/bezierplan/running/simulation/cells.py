@@ -89,8 +89,8 @@ def find_next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 
 
 def find_blocked_length(grid: Grid, way: Way, s: float) -> float:
-    """Return the length at which a way, from length `s` on, first enters an occupied cell; infinite
-    if never.
+    """Return the length along a way, from its beginning, at which it first enters an occupied cell
+    after `s`; infinite if never.
     """
     points = way.part(s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))

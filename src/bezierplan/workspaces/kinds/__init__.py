@@ -103,7 +103,7 @@ class Workspace(Model):
     """Keys common to all workspaces, and facts about a kind.
 
     drawn_kind: for a random workspace, the kind that planners see.
-    given_kind: for one converted from files of another format, the kind that planners see.
+    given_kind: the same for any other, unless the name of the kind says it.
     with_side: true if its problems have a `side`.
     moves: true for a world, in which runs are simulated drives.
     """

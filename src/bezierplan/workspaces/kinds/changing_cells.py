@@ -31,6 +31,7 @@ class Change(Model):
 
     @model_validator(mode="after")
     def _check_moment(self) -> Change:
+        """Refuse both or neither of after and at."""
         if len(self.model_fields_set & {"after", "at"}) != 1:
             raise build_error("expected either after or at")
         return self

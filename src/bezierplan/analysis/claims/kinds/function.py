@@ -52,8 +52,8 @@ class Options(ClaimCheck):
 
 
 def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
-    """Call the function of a study and return its finding. Raises Untestable if the experiment was
-    not run, Fault if there is no function of that name.
+    """Call the study's function that a check names, and return its finding. Raises Untestable if
+    the experiment was not run, Fault if there is no function of that name.
     """
     for experiment in check.experiments:
         if experiment not in material.results:

@@ -27,7 +27,7 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Draw the first so many circles of a layout, as where nothing moves.
+    """Draw a layout's moving circles, and keep the first `obstacles` of them.
 
     Raises ValueError if no free place is found.
     """
