@@ -196,7 +196,7 @@ def test_a_walk_meets_its_end_without_a_cell_twice(seed, tries):
     places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
     first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)
     part, marks = np.empty(30, dtype=np.int64), marks_of(places)
-    size = cell_paths.walk(rng, places, first, last, tries, part, marks)
+    size = cell_paths.forage(rng, places, first, last, tries, part, marks)
     assert not marks.any()
     if size:
         assert (part[0], part[size - 1]) == (first, last)

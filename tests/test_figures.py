@@ -558,10 +558,10 @@ def test_a_statistic_of_some_runs_has_an_open_mark():
 
 def test_large_fields_are_drawn_by_their_circles():
     circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
-    small = workspace.list_parts(random_field.from_circles(circles))
+    small = workspace.list_workspace_rows(random_field.from_circles(circles))
     counts = {"free": 1681 - 29, "occupied": 29, "corner": 2, "circle": 1}
     assert small["part"].value_counts().to_dict() == counts
-    large = workspace.list_parts(
+    large = workspace.list_workspace_rows(
         random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0)))
     )
     assert large["part"].tolist() == ["corner", "corner", "circle"]

@@ -58,7 +58,7 @@ def test_what_is_forked_starts_before_the_first_job_again_if_it_was_killed_and_e
     def parent():
         file = tmp_path / "told"
         source = "import os; open(snakemake, 'w').write(str(os.getppid()))"
-        assert forks.succeeds("parent.py", source, str(file))
+        assert forks.run_in_fork("parent.py", source, str(file))
         return int(file.read_text())
 
     forks.start()
@@ -80,7 +80,7 @@ def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
         "from bezierplan.running.jobs.forks import Forks\n"
         "victim = open('victim', 'w')\n"
         "assert sys.stdout is None and victim.fileno() == 1\n"
-        "assert Forks(sys.executable, open).succeeds('prints.py', 'print(1, flush=True)', None)\n"
+        "assert Forks(sys.executable, open).run_in_fork('prints.py', 'print(1, flush=1)', None)\n"
     )
     subprocess.run(["sh", "-c", f"exec '{sys.executable}' start.py >&-"], cwd=tmp_path, check=True)
     assert not (tmp_path / "victim").read_text()
@@ -88,7 +88,7 @@ def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
 
 def test_script_runs_in_the_folder_of_its_workflow(started, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert started.succeeds("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
+    assert started.run_in_fork("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
     assert (tmp_path / "told").read_text() == str(tmp_path)
 
 
@@ -98,7 +98,7 @@ def test_script_gets_its_object_and_no_input(started, tmp_path):
         "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, "
         "snakemake.params, sys.stdin.read())))"
     )
-    assert started.succeeds("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
+    assert started.run_in_fork("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
     assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
 
 
@@ -110,12 +110,12 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
         "import os, sys\nfile, names = snakemake\nprint(os.getppid(), set(names) <= "
         "set(sys.modules), file=open(file, 'a'))"
     )
-    assert forks.succeeds("modules.py", source, (str(told), FIRST))
+    assert forks.run_in_fork("modules.py", source, (str(told), FIRST))
     assert "True" in told.read_text()
     told.unlink()
     until = time.monotonic() + 120
     while time.monotonic() < until and not (told.exists() and "True" in told.read_text()):
-        assert forks.succeeds("modules.py", source, (str(told), LATER))
+        assert forks.run_in_fork("modules.py", source, (str(told), LATER))
         time.sleep(0.2)
     parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
     assert imported[-1] == "True"
@@ -131,9 +131,9 @@ def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks,
         ("raise ValueError('wrong')", "ValueError: wrong\n"),
         ("def broken(", "SyntaxError"),
     ):
-        assert not forks.succeeds("bad.py", source, None), source
+        assert not forks.run_in_fork("bad.py", source, None), source
         assert told in capfd.readouterr().err
-        assert forks.succeeds("good.py", "pass", None)
+        assert forks.run_in_fork("good.py", "pass", None)
 
 
 UNDER_WAY = (
@@ -153,8 +153,8 @@ def test_an_end_that_a_script_cannot_report_is_told_with_what_was_under_way(
 ):
     job = SimpleNamespace(log=[str(tmp_path / "log")], output=["out"])
     pause = "watchdog.begin(None, ''); import time; time.sleep(1.2)"
-    assert started.succeeds("pause.py", UNDER_WAY.format(1, pause), job)
-    assert not started.succeeds("ends.py", UNDER_WAY.format(1, work), job)
+    assert started.run_in_fork("pause.py", UNDER_WAY.format(1, pause), job)
+    assert not started.run_in_fork("ends.py", UNDER_WAY.format(1, work), job)
     line = f"run a: planner b: {ENDS[work]} (log: {tmp_path / 'log'})\n"
     assert capfd.readouterr().err == line
     assert (tmp_path / "log").read_text() == f"CRITICAL {line}"
@@ -169,7 +169,7 @@ def test_many_scripts_at_once(started, tmp_path):
     with ThreadPoolExecutor(12) as threads:
         ends = list(
             threads.map(
-                lambda k: started.succeeds("many.py", source, (k, str(files[k]))), range(12)
+                lambda k: started.run_in_fork("many.py", source, (k, str(files[k]))), range(12)
             )
         )
     assert ends == [k % 3 != 0 for k in range(12)]
@@ -177,7 +177,7 @@ def test_many_scripts_at_once(started, tmp_path):
 
 
 def test_large_object_of_a_script_that_does_not_read_it(started):
-    assert started.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
+    assert started.run_in_fork("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
 
 
 def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
@@ -191,7 +191,7 @@ time.sleep(600)
 """
     workflow = (
         f"from bezierplan.running.jobs.forks import Forks; Forks({sys.executable!r}, "
-        f"print).succeeds('long.py', {job!r}, {str(told)!r})"
+        f"print).run_in_fork('long.py', {job!r}, {str(told)!r})"
     )
     with subprocess.Popen([sys.executable, "-c", workflow]) as process:
         while not (told.exists() and told.read_text()):
@@ -209,11 +209,11 @@ def test_time_of_jobs_counts_once_their_workflow_has_ended(tmp_path):
         "forks.end()\n"  # nothing to end
         "work = 'import time\\nbegin = time.process_time()\\n'\n"
         "work += 'while time.process_time() < begin + 2: pass'\n"
-        "assert forks.succeeds('works.py', work, None)\n"
+        "assert forks.run_in_fork('works.py', work, None)\n"
         "before = measure_cpu_time()\n"
         "assert before < 2\n"
         "forks.end()\n"
         "assert measure_cpu_time() > before + 2\n"
-        "assert forks.succeeds('again.py', 'pass', None)\n"
+        "assert forks.run_in_fork('again.py', 'pass', None)\n"
     )
     subprocess.run([sys.executable, "start.py"], cwd=tmp_path, check=True)

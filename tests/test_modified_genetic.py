@@ -138,7 +138,7 @@ def walked(ones, found, curve):
         pieces = np.empty((len(points) - 3, 4, 2))
         for k, piece in enumerate(pieces):
             gene_curves._write_piece(points, k, piece)
-    x, y = cell_length.walk(pieces)
+    x, y = cell_length.sample_curve(pieces)
     return (
         x,
         y,

@@ -116,13 +116,13 @@ def test_a_start_in_an_occupied_cell_is_refused():
 
 
 def test_a_fine_raster_is_drawn_as_its_polygons():
-    parts = picture.list_parts(drawn("gaps", 0.1, "overlap"))
+    parts = picture.list_workspace_rows(drawn("gaps", 0.1, "overlap"))
     assert set(parts["part"]) == {"corner", "ring"}
     assert parts[parts["part"] == "ring"]["obstacle"].nunique() == len(
         drawn("gaps", 0.1, "overlap").shapes.obstacles
     )
     assert {"free", "occupied", "ring"} <= set(
-        picture.list_parts(drawn("gaps", 1.0, "overlap"))["part"]
+        picture.list_workspace_rows(drawn("gaps", 1.0, "overlap"))["part"]
     )
 
 

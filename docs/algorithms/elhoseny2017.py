@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry.cell_length import list_touched_cells, walk
+from bezierplan.geometry.cell_length import list_touched_cells, sample_curve
 from bezierplan.workspaces.lattice import compute_distances
 
 METHOD = "elhoseny2017/mga"
@@ -49,7 +49,7 @@ def plan(
         near = np.hypot(*(points[x][:, None] - points[x]).T) < least_distance  # Distance Threshold
         if not 0 < x.sum() < 60 or near.sum() > x.sum():
             return np.inf
-        xy = walk(np.vstack([ends[:1], points[x], ends[1:]])[None])
+        xy = sample_curve(np.vstack([ends[:1], points[x], ends[1:]])[None])
         length = np.cumsum(np.sqrt((np.diff(xy) ** 2).sum(axis=0)))[-1]
         return np.inf if walls[list_touched_cells(*xy)[::-1]].any() else length  # Valid Path
 

@@ -15,7 +15,7 @@ import bezierplan
 from bezierplan.commands import arguments
 from bezierplan.places import EXTRA, PACKAGE, require_extra, set_kernel_target
 from bezierplan.running.jobs import watchdog
-from bezierplan.schema.checked import Fault, suggest_closest
+from bezierplan.schema.checked import Fault, describe_known
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
 """The words that called the command line."""
@@ -46,7 +46,7 @@ def main(words: list[str]) -> None:
         elif name == "--version":
             print(f"bezierplan {bezierplan.__version__}")
         elif name not in COMMANDS:
-            _refuse(f"{PROGRAM}: {name}: unknown{suggest_closest(name, COMMANDS)}")
+            _refuse(f"{PROGRAM}: {name}: unknown{describe_known(name, COMMANDS)}")
         else:
             with require_extra():
                 command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")

@@ -26,7 +26,7 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running.answer import read_path
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import check_all, check_known, suggest_closest
+from bezierplan.schema.checked import check_all, check_known, describe_known
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
@@ -99,7 +99,7 @@ class Judgement:
 
     @property
     def gap(self) -> float:
-        """How much longer the path is than the exact shortest one, as a share of that."""
+        """Return how much longer the path is than the exact shortest one, as a share of that."""
         # Where the start is the target, the shortest path has no length.
         return self.length / self.shortest - 1 if self.shortest else 0.0
 
@@ -240,8 +240,8 @@ class Comparison:
 
     @property
     def runs(self) -> pd.DataFrame:
-        """The fields of all answers, one row each, with method (its label) and problem
-        (its name).
+        """Return the fields of all answers, one row each, with method (its label) and problem (its
+        name).
         """
         import pandas as pd
 
@@ -253,7 +253,7 @@ class Comparison:
 
     @property
     def table(self) -> pd.DataFrame:
-        """A row for each method, the best one first.
+        """Return a row for each method, the best one first.
 
         Columns: problems, runs, and feasible, the share of runs whose path is free. Length, excess
         (over the exact shortest path, as a share) and curvature are medians over the free paths;
@@ -290,7 +290,7 @@ class Comparison:
         drawn_path.save(File(file), *self._draws().values())
 
     def _draws(self) -> dict[str, partial]:
-        """Return problem -> the function that draws it."""
+        """Return the function that draws each problem, by its name."""
         names = (each.problem.name for own in self.answers.values() for each in own)
         return {name: partial(self._draw, name) for name in names}
 
@@ -757,7 +757,7 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
     known = [f"{study}/{each}" for study in studies for each in _read_study(study).methods]
     if f"{key}/{name}" not in known:
         known = known or [*_list_planners(), *list_planners()]
-        raise ValueError(f"method: {method}: unknown{suggest_closest(method, known)}")
+        raise ValueError(f"method: {method}: unknown{describe_known(method, known)}")
     return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
 
@@ -796,8 +796,8 @@ def check_settings(name: str, module: Any, settings: Mapping[str, Any], problem:
 
 
 def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
-    """Return the methods that the papers propose: ``"study/method"`` -> the kinds of map that each
-    serves.
+    """Return the methods that the papers propose, each with the kinds of map that it serves, by
+    ``"study/method"``.
 
     Parameters
     ----------
@@ -819,7 +819,7 @@ def methods(*, all: bool = False) -> dict[str, tuple[str, ...]]:
 
 
 def _list_planners() -> dict[str, str]:
-    """Return ``"study/method"`` -> its planner, for the methods of the project's studies."""
+    """Return the planners of the methods of the project's studies, by ``"study/method"``."""
     return {
         f"{key}/{name}": _read_study(key).planner(name)
         for key in _list_keys()

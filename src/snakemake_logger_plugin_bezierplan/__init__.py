@@ -152,10 +152,10 @@ def describe_unknown_target(message: str) -> str:
     """Return the message about a target that no rule makes, from Snakemake's own; empty for another
     one.
     """
-    from bezierplan.schema.checked import suggest_closest
+    from bezierplan.schema.checked import describe_known
 
     match = re.search(r"No rule to produce (\S+)", message)
-    return f"{match[1]}: no target{suggest_closest(match[1], KNOWN)}" if match and KNOWN else ""
+    return f"{match[1]}: no target{describe_known(match[1], KNOWN)}" if match and KNOWN else ""
 
 
 def format_duration(seconds: float) -> str:

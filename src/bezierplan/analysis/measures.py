@@ -67,13 +67,13 @@ def read_reference(runs: pd.DataFrame) -> pd.Series:
     return runs["reference"]
 
 
-def extend_histories(runs: pd.DataFrame) -> np.ndarray:
-    """Extend the best objective so far to equal numbers of generations: (runs, maximum generations
-    + 1). Runs that stopped early hold their last value.
+def extend_histories(runs: pd.DataFrame, least: int = 0) -> np.ndarray:
+    """Return the histories (runs, generations + 1), each extended with its last value to the
+    length of the longest one, or to `least` if that is longer.
     """
     lengths = runs["history"].map(len).to_numpy()
     starts = np.cumsum(lengths) - lengths
-    columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
+    columns = np.minimum(np.arange(max(lengths.max(), least)), lengths[:, None] - 1)
     # Histories end to end; beyond the end of one, its last entry is repeated.
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
@@ -93,8 +93,8 @@ def gap(runs: pd.DataFrame, problems: Problems) -> pd.Series:
 
 
 def is_near_shortest(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
-    """Return where (n,) the certified checker accepts a path that is at most this share longer than
-    the exact shortest one.
+    """Tell which runs (n,) have a path that the certified checker accepts and that is at most this
+    share longer than the exact shortest one.
     """
     return (certified_length(runs, problems) <= (1 + share) * runs["bound"]).to_numpy()
 

@@ -320,7 +320,7 @@ def compute_prediction_interval(
         tail = max(TAIL * (len(groups) + 1) - 0.5, 0.0) / len(groups)
     # No resample goes beyond our own extremes, so their ranks decide.
     elif name in ("min", "max"):
-        least, most = _draw_extremes(name, values, size)
+        least, most = _spread_extremes(name, values, size)
         least, most = np.maximum(least, possible[0]), np.minimum(most, possible[1])
     elif name == "std" and np.isfinite(values).all():
         least = most = _draw_stds(values, size)
@@ -351,7 +351,7 @@ def scale_statistic(name: str, values: np.ndarray, among: int, size: int | None)
     if name not in ("min", "max"):
         return value
     # The upper of the middle two draws: one of them may be infinite.
-    middle = sum(np.sort(ends)[DRAWS // 2] for ends in _draw_extremes(name, values, size)) / 2
+    middle = sum(np.sort(ends)[DRAWS // 2] for ends in _spread_extremes(name, values, size)) / 2
     return float(middle) if math.isfinite(middle) else value
 
 
@@ -406,9 +406,9 @@ def compute_expanded_tail(n: int) -> float:
     return float(ndtr(math.sqrt(n / (n - 1)) * stdtrit(n - 1, TAIL)))
 
 
-def _draw_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of
-    `size` others may lie, by evenly spaced chance.
+def _spread_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the gaps between our values (n,) in which the least (or largest) of `size` others lies
+    at evenly spaced probabilities: lower and upper ends (DRAWS,).
 
     Resampling never goes beyond our own extremes, whereas half of all experiments of our size do.
     All orders of our values and the others are equally likely, which gives the probability of each
@@ -416,7 +416,7 @@ def _draw_extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray
     """
     # The largest of values is the least of their negatives.
     if name == "max":
-        least, most = _draw_extremes("min", -values, size)
+        least, most = _spread_extremes("min", -values, size)
         return -most, -least
     ends = np.concatenate([[-np.inf], np.sort(values), [np.inf]])
     # Probability that more than 0, 1, ... of ours lie below the least of the others.

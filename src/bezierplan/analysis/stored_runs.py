@@ -30,7 +30,8 @@ def list_run_tables(folder: Path) -> dict[str, list[Path]]:
 
 
 def compute_table_digest(files: list[Path]) -> str:
-    """Compute a digest of the rows of chunk files, sorted by id, each row once.
+    """Compute a digest of the rows of chunk files, each distinct row once, in the order of their
+    text.
 
     Neither the order of the files nor the split of repeats into chunks matters.
     """

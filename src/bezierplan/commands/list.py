@@ -79,7 +79,7 @@ def _list_titles(study: Study, artefacts: Mapping[str, Any]) -> Rows:
 
 def _list_methods(study: Study) -> Rows:
     """Yield each method with what is its own: printed name, planner, policy and settings. The
-    first one of a planner also has the sentence about that.
+    first one of a planner also has the paragraph about that.
     """
     described = set()
     for name, method in study.methods.items():
@@ -87,9 +87,11 @@ def _list_methods(study: Study) -> Rows:
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         policy = f"policy {method.policy}" if method.policy else ""
         own = ", ".join(f"{key} {value}" for key, value in method.settings.items())
-        sentence = "" if planner in described else _read_sentence(load_planner(planner)).rstrip(".")
+        paragraph = (
+            "" if planner in described else _read_paragraph(load_planner(planner)).rstrip(".")
+        )
         described.add(planner)
-        parts = filter(None, [f"{planner}{variant}", policy, own, sentence])
+        parts = filter(None, [f"{planner}{variant}", policy, own, paragraph])
         yield name, f"{study.labels.get(name, name)}: {'; '.join(parts)}"
 
 
@@ -100,15 +102,15 @@ def _list_settings(study: Study) -> Rows:
             yield f"{planner}: {name}", f"{declared}; {declared.meaning}"
 
 
-def _read_sentence(thing: Any) -> str:
+def _read_paragraph(thing: Any) -> str:
     """Return the first paragraph about a module, or about a model's module, on one line."""
     module = inspect.getmodule(thing) if isinstance(thing, type) else thing
     return " ".join((inspect.getdoc(module) or "").partition("\n\n")[0].split())
 
 
-def _read_sentences(things: Mapping[str, Any]) -> Rows:
-    """Return name -> the first paragraph about it."""
-    return ((name, _read_sentence(each)) for name, each in things.items())
+def _read_paragraphs(things: Mapping[str, Any]) -> Rows:
+    """Yield each name with the first paragraph about its thing."""
+    return ((name, _read_paragraph(each)) for name, each in things.items())
 
 
 KINDS: dict[str, Callable[[Study], Rows]] = {
@@ -128,9 +130,9 @@ NAMES: dict[str, Callable[[], Rows]] = {
     "metrics": lambda: (
         (name, f"{each.meaning} ({each.unit})") for name, each in metrics.METRICS.items()
     ),
-    "panels": lambda: _read_sentences(panels.list_kinds()),
-    "tests": lambda: _read_sentences(kinds.list_kinds()),
-    "worlds": lambda: _read_sentences(workspace_kinds.kinds()),
-    "planners": lambda: _read_sentences({name: load_planner(name) for name in list_planners()}),
+    "panels": lambda: _read_paragraphs(panels.list_kinds()),
+    "tests": lambda: _read_paragraphs(kinds.list_kinds()),
+    "worlds": lambda: _read_paragraphs(workspace_kinds.kinds()),
+    "planners": lambda: _read_paragraphs({name: load_planner(name) for name in list_planners()}),
 }
 """Kind -> the names that the files of a study can use."""

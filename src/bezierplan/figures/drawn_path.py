@@ -79,10 +79,11 @@ def build_html(text: str, *draws: Callable[..., object]) -> str:
 
 
 def save(file: File | io.BytesIO, *draws: Callable[..., object], **how: Any) -> None:
-    """Save a picture with a legend, in which each function draws on axes of its own.
+    """Let the first `_MOST` functions draw, each on axes of its own, and save the picture with one
+    legend.
 
-    file: its suffix names the kind of picture. draws: functions of axes, of which the first ones
-    are drawn. how: options of matplotlib's `savefig`.
+    file: its suffix names the kind of picture. draws: functions that draw on given axes. how:
+    options of matplotlib's `savefig`.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure

@@ -56,7 +56,7 @@ SETTINGS = {
 }
 
 
-def mark(shape: str, size: float, colour: str, **more: Any) -> dict[str, Any]:
+def build_mark_style(shape: str, size: float, colour: str, **more: Any) -> dict[str, Any]:
     """Return the style of marks without a line; more: properties of matplotlib."""
     return {"color": colour, "linestyle": "", "marker": shape, "markersize": size, **more}
 
@@ -117,13 +117,13 @@ SCALE, _LIGHTEST = "viridis", 0.58
 
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 
-PUBLISHED_MARK = mark("D", 4.5, BLACK, markerfacecolor=FREE, markeredgewidth=0.9)
+PUBLISHED_MARK = build_mark_style("D", 4.5, BLACK, markerfacecolor=FREE, markeredgewidth=0.9)
 
 # In the legend, an interval as a bar or as a band: of no method's colour, because all have one.
 INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
 
 # In the legend, the mark of a statistic to which not all runs contribute.
-HOLLOW = mark("o", 3.5, BLACK, markerfacecolor=FREE)
+HOLLOW = build_mark_style("o", 3.5, BLACK, markerfacecolor=FREE)
 HOLLOW_LABEL = "hollow: some runs are not feasible"
 
 # How labels begin that stand last in a legend, because they are about all others.

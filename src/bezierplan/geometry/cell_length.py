@@ -89,7 +89,7 @@ def cut(pieces: np.ndarray, points: int) -> None:
         step //= 2
 
 
-def walk(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def sample_curve(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a curve less than a cell apart, from its Bézier pieces (pieces,
     degree + 1, 2).
 
@@ -161,8 +161,8 @@ def write_samples(
 
 @allocation_free
 def _find_cell(coordinate: float, before: int) -> int:
-    """Return the column or row of a coordinate; near a grid line, the previous sample's if
-    close.
+    """Return the column or row of a coordinate; on a grid line, keep that of the sample before if
+    it borders the line.
     """
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
@@ -183,7 +183,9 @@ def list_touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @allocation_free
 def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> int:
-    """Write the `list_touched_cells` of a polyline (n,), at most 2 n, and return their number."""
+    """Write the columns and rows of the cells that a polyline (n,) touches, in order; return how
+    many there are, at most 2 n.
+    """
     column, row = math.floor(x[0]), math.floor(y[0])
     columns[0], rows[0] = column, row
     count = 1
@@ -229,7 +231,7 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
     rows, columns = occupied.shape
     (x0, y0), (x1, y1) = start, end
     column, row = math.floor(x0), math.floor(y0)
-    last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
+    last_column, last_row = _find_last_cell(x0, x1), _find_last_cell(y0, y1)
     if (
         min(column, last_column) < 0
         or max(column, last_column) >= columns
@@ -260,8 +262,10 @@ def is_free_leg(occupied: np.ndarray, start: np.ndarray, end: np.ndarray) -> boo
 
 
 @allocation_free
-def _last_cell(first: float, last: float) -> int:
-    """Return the column or row in which a leg ends; the previous one if it ends on a grid line."""
+def _find_last_cell(first: float, last: float) -> int:
+    """Return the column or row in which a leg ends; if it ends on a grid line, the one that it
+    comes from.
+    """
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
     return min(math.floor(first), math.floor(last + _ON_LINE))
@@ -318,7 +322,7 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 def sample_in_cells(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of samples of a path, in cells, less than a cell apart."""
-    return walk(grid.in_cells(curves.bezier_pieces(path)))
+    return sample_curve(grid.in_cells(curves.bezier_pieces(path)))
 
 
 def length_by_points(path: Path, grid: Grid) -> float:

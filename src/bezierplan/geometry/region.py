@@ -275,7 +275,9 @@ def _build_circle_region(circles: Circles) -> CircleRegion:
 
 
 def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
-    """Build the region of polygons and of the outside of the border, by its boundary."""
+    """Build the blocked region of a map of polygons (the obstacles and all beyond the border) as
+    edges with free space to their left.
+    """
     from bezierplan.geometry.bins import sort_into_bins
 
     cornered = [_list_corners(ring) for ring in list_rings(polygons.free())]

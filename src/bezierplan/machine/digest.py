@@ -207,8 +207,8 @@ def find_sources(*modules: str) -> list[Path]:
 @cache
 def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, str]:
     """Return what the results of a job depend on: a digest of functions, of all that they import
-    from this package, and of further modules; and library -> version, for those among `COMPUTING`
-    that these import.
+    from this package, and of further modules; and the versions, by library, of those among
+    `COMPUTING` that these import.
     """
     trees = []
     named = set(modules)

@@ -99,12 +99,14 @@ class _File(IndexDataCacheFile):
     """
 
     def _load_index(self) -> dict:
+        """Read the index, empty if it is damaged."""
         try:
             return super()._load_index()
         except Exception:  # a damaged pickle raises almost anything
             return {}
 
     def load(self, key: Any) -> Any:
+        """Load a kernel, or return None if its file is damaged."""
         try:
             return super().load(key)
         except Exception:
@@ -139,8 +141,8 @@ class KernelCache(FunctionCache):
 
 
 @cache
-def _can_be_written(folder: Path) -> bool:
-    """Return whether files can be created in a folder, which is made if necessary."""
+def _prepare_folder(folder: Path) -> bool:
+    """Make a folder if necessary, and return whether files can be created in it."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         # numba's own test: a folder can have the mode of one that can be written, and be none.
@@ -163,7 +165,7 @@ class Kernel(CPUDispatcher):
         """Keep compiled forms of this kernel."""
         state = name_state(self.py_func.__module__, inspect.getfile(self.py_func))
         for folder in FOLDERS:
-            if _can_be_written(folder / state):
+            if _prepare_folder(folder / state):
                 self._cache = KernelCache(self.py_func, folder / state)
                 return
 
@@ -236,7 +238,7 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
         until = time.monotonic() + (PATIENCE if locks else math.inf)
-        while not _is_locked(lock) and time.monotonic() < until:
+        while not _try_lock(lock) and time.monotonic() < until:
             time.sleep(LOOK)
         locks.append(folder)
         try:
@@ -245,10 +247,8 @@ def _lock_alone(folder: Path, locks: list[Path]) -> Iterator[None]:
             locks.pop()
 
 
-def _is_locked(lock: Any) -> bool:
-    """Return whether this process now holds the lock on a file, or the file cannot be locked at
-    all.
-    """
+def _try_lock(lock: Any) -> bool:
+    """Try to lock a file without waiting; return False only if another process holds the lock."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -55,8 +55,8 @@ def load_module(name: str) -> ModuleType:
 
 
 def find_code(study: str, folder: str) -> dict[str, str]:
-    """Return the code of a study, part of `PARTS` -> name for `load_module`: files of its folder,
-    or for a paper of this project modules of `bezierplan.papers`.
+    """Return the names for `load_module` of the parts `PARTS` of a study, by part: files of its
+    folder, or for a paper of this project modules of `bezierplan.papers`.
     """
     ours = PACKAGE / "papers" / study
     if ours.is_dir():
@@ -68,8 +68,8 @@ def find_code(study: str, folder: str) -> dict[str, str]:
 
 @cache
 def find_kinds(folder: str, part: str) -> dict[str, str]:
-    """Return name -> module, of one file per kind: those of a folder of this package, and those in
-    the folder `part` of its papers.
+    """Return the modules with one kind each, by the kind: those of a folder of this package, and
+    those in the folder `part` of its papers.
     """
     files = [*(PACKAGE / folder).glob("[!_]*.py"), *PACKAGE.glob(f"papers/*/{part}/[!_]*.py")]
     return {

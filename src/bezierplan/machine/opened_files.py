@@ -63,13 +63,13 @@ def keep(job: str, sources: Iterable[str | Path]) -> None:
 
 
 def read_kept(job: str) -> dict[str, str]:
-    """Return what was kept for a job: `opens FILE` -> the digest of what the file first held."""
+    """Return what was kept for a job: by `opens FILE`, the digest of what the file first held."""
     file = RECORDS / f"{job}.json"
     return json.loads(file.read_text()) if file.is_file() else {}
 
 
 def hash_contents(names: Iterable[str]) -> dict[str, str]:
-    """Return `opens FILE` -> the digest of what the file holds now, for names of this form."""
+    """Return the digests of what files hold now, by `opens FILE`, for names of this form."""
     return {
         name: compute_content_digest(name.removeprefix(OPENS))
         for name in names

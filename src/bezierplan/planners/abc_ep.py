@@ -272,7 +272,7 @@ def _evolve(rng, occupied, path, rules):
 
 @allocation_free
 def _mutate(rng, occupied, points, child, spread):
-    """Make a child of a path, in place, and return its number of points.
+    """Write a changed copy of a path into `child`, and return its number of points.
 
     An inner point is moved or dropped, or a midpoint is inserted.
     """

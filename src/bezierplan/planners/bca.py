@@ -142,9 +142,8 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Check rules across several settings.
-
-    Raises ValueError naming the setting and what is expected.
+    """Raise ValueError, naming the setting and what is expected, unless settings that depend on
+    each other fit together.
     """
     check_pairs(settings)
     check_curve(settings, "control_points")

@@ -121,9 +121,8 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Check rules across several settings.
-
-    Raises ValueError naming the setting and what is expected.
+    """Raise ValueError, naming the setting and what is expected, unless settings that depend on
+    each other fit together.
     """
     check_curve(settings, "genes")
     check_pairs(settings)
@@ -214,10 +213,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def drop_repeated_points(points: np.ndarray, consecutive: bool = False) -> np.ndarray:
-    """Return the control points (m, 2) of (n, 2) that coincide with no other (song2016, Remark 3).
+    """Return control points (n, 2) without repetitions, (m, 2) (song2016, Remark 3).
 
-    Start and target stay, and the first of several free ones. With `consecutive` only points that
-    follow each other count as coinciding.
+    Start and target stay, and of equal inner points the first. With `consecutive`, only points that
+    follow each other count as equal.
 
     >>> points = np.array([[0, 0], [0, 0], [2, 1], [3, 1], [2, 1], [4, 0]])
     >>> drop_repeated_points(points).tolist()
@@ -270,10 +269,10 @@ class _Curve(NamedTuple):
 
 @compile_kernel
 def _search(rng, cells, occupied, places, curve, rules):
-    """Run the genetic algorithm.
+    """Run the genetic algorithm; return the best chromosome's cells, its number of samples in
+    occupied cells, and the history.
 
-    Returns the cells (control points,) of the best chromosome, the number of its samples in
-    occupied cells, and the best objective so far, or of each generation (generations + 1,).
+    The history (generations + 1,) holds the best objective so far, or of each generation.
 
     cells: (population, control points) numbers of cells.
     places: (cells + 2, 2) the cells' centres, then start and target, in cells.

@@ -188,9 +188,8 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Check rules across several settings.
-
-    Raises ValueError naming the setting and what is expected.
+    """Raise ValueError, naming the setting and what is expected, unless settings that depend on
+    each other fit together.
     """
     try:
         curves.piece_matrix(settings["curve"], settings["control_points"] + 2)

@@ -78,9 +78,8 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Check rules across several settings.
-
-    Raises ValueError naming the setting and what is expected.
+    """Raise ValueError, naming the setting and what is expected, unless settings that depend on
+    each other fit together.
     """
     check_curve(settings, "control_points")
 
@@ -144,10 +143,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compile_kernel
 def _evolve(rng, x, low, high, objective, occupied, rules):
-    """Run DE/rand/1/bin.
+    """Run DE/rand/1/bin; return the best vector (2 n,), the history, and the vector's violation.
 
-    Returns the best vector (2 n,), the lowest cost after each generation (generations + 1,), and
-    the best vector's violation.
+    The history (generations + 1,) holds the lowest cost after each generation.
 
     x: (population, 2 n), the first generation; overwritten.
     low, high: (2 n,), the field, at whose border coordinates are held.
@@ -186,7 +184,7 @@ def _evolve(rng, x, low, high, objective, occupied, rules):
 
 @allocation_free
 def _draw_three_others(rng, i, population):
-    """Draw three different vectors, none of which is i."""
+    """Draw the numbers of three different vectors, none of which is `i`."""
     a = b = c = i
     while a == i:
         a = draw_integer(rng, 0, population)

@@ -137,10 +137,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compile_kernel
 def _search(rng, lattice, free, cells, rules):
-    """Run the genetic algorithm on sequences of cells.
+    """Run the genetic algorithm on sequences of cells; return the shortest path (n,), empty if none
+    can be decoded, and the history.
 
-    Returns the path (n,) of the best chromosome, empty if none can be decoded, and the shortest
-    length so far (generations + 1,).
+    The history (generations + 1,) holds the shortest length so far.
 
     cells: (population, genes + 2), including start and target.
     free: (n,) cells.

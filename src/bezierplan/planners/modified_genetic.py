@@ -157,9 +157,8 @@ class Outcome(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Check rules across several settings.
-
-    Raises ValueError naming the setting and what is expected.
+    """Raise ValueError, naming the setting and what is expected, unless settings that depend on
+    each other fit together.
     """
     check_pairs(settings)
     if settings["first_points"] > settings["most_points"]:
@@ -422,7 +421,7 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, most, fiel
 
 @allocation_free
 def _select_parents(rng, wheel):
-    """Draw two different parents, in proportion to fitness (Algorithm 1, line 9).
+    """Draw the places of two different parents, in proportion to fitness (Algorithm 1, line 9).
 
     The second is drawn from the wheel without the first one.
     """

@@ -306,7 +306,8 @@ def _find_cell_at(problem: Problem, end: str) -> int:
 
 @compile_kernel
 def _search(starts, moves, ground, start, target, free, alleles, rules):
-    """Run the genetic algorithm.
+    """Run the genetic algorithm and return its outcome, with an empty path if a first path is not
+    found.
 
     free: free cells without the ends.
     alleles: cells from which random mutation draws.

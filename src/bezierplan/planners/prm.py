@@ -106,10 +106,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def _prepare_circles(circles: Circles, d_min: float) -> tuple:
-    """Return what the roadmap needs from circles.
-
-    These are two corners (2,) between which nodes are drawn, and functions that tell which points
-    and which segments (n,) are free.
+    """Return two corners (2,) between which nodes are drawn among circles, and functions that tell
+    which points and segments (n,) are free.
     """
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
@@ -122,10 +120,10 @@ def _prepare_circles(circles: Circles, d_min: float) -> tuple:
 
 
 def _prepare_grid(grid: Grid, d_min: float) -> tuple:
-    """Return `_prepare_circles` for a grid, where nodes lie in free cells, between the centres of
-    the outermost ones.
+    """Return two corners (2,) between which nodes are drawn on a grid, and functions that tell
+    which points and segments (n,) are free.
 
-    Raises ValueError for a `d_min` above 0.
+    The corners are the centres of two cells. Raises ValueError for a `d_min` above 0.
     """
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")

@@ -307,13 +307,13 @@ def _widen(course, shortest, wish):
     k = min(k + _STRIDE, top)
     while k > 0 and _try(course, radii, live, levels[k])[0] != _FREE:
         k -= 1
-    radii = _raise(course.turns, radii, live, levels[k])
+    radii = _raise_radii(course.turns, radii, live, levels[k])
 
     # The others grow together, and whichever meets something stops.
     while k < top and live.any():
         verdict, first, last = _try(course, radii, live, levels[top])
         if verdict == _FREE:
-            return _raise(course.turns, radii, live, levels[top]), True
+            return _raise_radii(course.turns, radii, live, levels[top]), True
         above = top
         while above - k > 1:
             # A bisection: here the path is free at k and not at `above`.
@@ -324,7 +324,7 @@ def _widen(course, shortest, wish):
             else:
                 above = middle
                 verdict, first, last = there
-        radii = _raise(course.turns, radii, live, levels[k])
+        radii = _raise_radii(course.turns, radii, live, levels[k])
         if verdict == _TOO_LONG or not live[first : last + 1].any():
             break
         live[first : last + 1] = False
@@ -346,7 +346,7 @@ def _list_radii(least, most):
 
 
 @compile_kernel
-def _raise(turns, radii, live, level):
+def _raise_radii(turns, radii, live, level):
     """Return radii (n,) with those of live turns raised to a level, or as wide as the obstacle."""
     return np.where(live, np.maximum(level, turns.radius), radii)
 
@@ -359,7 +359,7 @@ def _try(course, radii, live, level):
     blame.
     """
     course.trials[0] += 1
-    string = _shorten(course.turns, _raise(course.turns, radii, live, level))
+    string = _shorten(course.turns, _raise_radii(course.turns, radii, live, level))
     if string.crowd > 0:
         return _CROWDED, string.first[string.crowd], string.last[string.crowd]
     if _measure_string(string) > course.limit:
@@ -471,7 +471,7 @@ def _pull(turns, radii, patient):
 
 @allocation_free
 def _find_neighbour(centres, side, k):
-    """Find the nearer neighbour of a circle to the same side, or return 0."""
+    """Return the number of the nearer neighbour of circle `k` on its side, 0 if it has none."""
     nearest, gap = 0, np.inf
     for j in (k - 1, k + 1):
         if side[j] == side[k]:

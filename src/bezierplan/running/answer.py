@@ -167,7 +167,7 @@ def judge_path(path: Path | None, blocked: Region) -> dict[str, Any]:
 
 
 # --------------------------------------------------------------------------------------------------
-# The fields. Each function returns the plain value of a field, or raises Unfit.
+# The fields
 
 
 def read_path(path: Any) -> Path:
@@ -195,18 +195,23 @@ def read_path(path: Any) -> Path:
 
 
 def _check_objective(value: Any) -> float:
+    """Return the objective as a float; raise Unfit unless it is a number and not nan."""
     if not _is_a(Real, value) or math.isnan(value):
         raise Unfit("objective: expected a number, and not nan")
     return float(value)
 
 
 def _check_claim(value: Any) -> bool:
+    """Return the claim as a bool; raise Unfit unless it is true or false."""
     if not isinstance(value, _TRUTHS):
         raise Unfit("claimed_feasible: expected true or false")
     return bool(value)
 
 
 def _check_evaluations(value: Any) -> int:
+    """Return the evaluations as an int; raise Unfit unless they are a whole number of at least 0
+    and at most `_LARGEST_WHOLE`.
+    """
     if not _is_a(Integral, value) or not 0 <= value <= _LARGEST_WHOLE:
         raise Unfit(
             f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}"
@@ -215,18 +220,25 @@ def _check_evaluations(value: Any) -> int:
 
 
 def _check_history(values: Any) -> np.ndarray:
+    """Return a copy of the history (generations + 1,); raise Unfit unless it holds numbers, at
+    least one and none nan.
+    """
     if not _is_array(values, 1, "fiu") or not len(values) or np.isnan(values).any():
         raise Unfit("history: expected an array of numbers without nan, (generations + 1,)")
     return np.array(values, dtype=float)
 
 
 def _check_stop(value: Any) -> str:
+    """Return the word for why a planner stopped; raise Unfit unless it is printable text."""
     if not isinstance(value, str) or not value.isprintable():
         raise Unfit("stop: expected a word")
     return value
 
 
 def _check_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
+    """Return the extra columns as plain values; raise Unfit for a name that no column can have or
+    one of `names`, and for an unfit value.
+    """
     if not isinstance(columns, dict):
         raise Unfit("extra: expected names with numbers or truths")
     for name in columns:
@@ -241,6 +253,9 @@ def _check_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool
 
 
 def _check_column(name: str, value: Any) -> float | bool:
+    """Return the value of an extra column as a bool, int or float; raise Unfit unless it is a truth
+    or a number, a whole one of at most `_EXACT`.
+    """
     if isinstance(value, _TRUTHS):
         return bool(value)
     if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _EXACT):

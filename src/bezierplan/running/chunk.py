@@ -16,7 +16,7 @@ class Condition(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The condition as it stands in a run's name."""
+        """Return the condition as it stands in a run's name."""
         return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
 
 
@@ -56,13 +56,13 @@ class Chunk(NamedTuple):
 
     @property
     def runs(self) -> int:
-        """Number of its runs."""
+        """Return the number of its runs."""
         first, last = self.repeats
         return len(self.conditions()) * (last - first)
 
     @property
     def name(self) -> str:
-        """The common part of the ids of its runs, with a star for conditions."""
+        """Return the common part of the ids of its runs, with a star for conditions."""
         return f"{self.study}/{self.experiment}/*/{self.method}"
 
 

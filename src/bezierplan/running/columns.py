@@ -83,7 +83,7 @@ flag is true or false; other types are lists.
 
 
 def read_columns(*tables: type) -> dict[str, tuple[type, Column]]:
-    """Return the columns of some tables: name -> type of its values and meaning."""
+    """Return the type of the values and the meaning of each column of some tables, by name."""
     return {
         name: typing.get_args(annotation)
         for table in tables
@@ -92,7 +92,7 @@ def read_columns(*tables: type) -> dict[str, tuple[type, Column]]:
 
 
 def _read_types(*tables: type) -> dict[str, str]:
-    """Return column -> word for its type, for some tables."""
+    """Return the word for the type of each column of some tables, by name."""
     return {name: TYPES.get(kind, "list") for name, (kind, _) in read_columns(*tables).items()}
 
 

@@ -14,5 +14,5 @@ class Descriptions(NamedTuple):
 
     @property
     def homes(self) -> dict[str, str]:
-        """Problem -> the name of its workspace."""
+        """Return the name of each problem's workspace, by problem."""
         return {name: problem["workspace"] for name, problem in self.problems.items()}

@@ -36,12 +36,14 @@ class Files(NamedTuple):
 
     @property
     def chunks(self) -> list[str]:
-        """Chunks of all methods."""
+        """Return the chunks of all methods."""
         return [chunk for chunks in self.runs.values() for chunk in chunks]
 
 
 def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
-    """Return experiment -> its files, from a job's inputs `runs`, `problems` and `bounds`."""
+    """Return the files of each experiment, by its name, from a job's inputs `runs`, `problems` and
+    `bounds`.
+    """
     runs = iter(getattr(inputs, "runs", ()))
     return {
         name: Files(
@@ -56,6 +58,6 @@ def group_by_experiment(shows: Shows, inputs: Any) -> dict[str, Files]:
 
 
 def group_by_table(files: Iterable[str]) -> dict[str, str]:
-    """Return table -> its file, of published numbers or of comparisons with them."""
+    """Return each table's file of published numbers or of comparisons with them, by table."""
     # Up to the first point: `table1.comparison.csv` is of table1, too.
     return {Path(file).name.split(".")[0]: file for file in files}

@@ -88,7 +88,7 @@ class RunsVerdict(NamedTuple):
 
     @property
     def digest(self) -> str:
-        """One digest for all files of runs."""
+        """Return one digest for all files of runs."""
         return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
 
 
@@ -270,7 +270,7 @@ def is_same(value: float, again: float, tolerance: float) -> bool:
 
 
 def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, tuple[Any, float]]:
-    """Return what the points of a path say: column -> value and tolerance.
+    """Return what the points of a path say: value and tolerance by column.
 
     Raises ValueError for points that are no path of the problem.
     """
@@ -288,7 +288,7 @@ def _judge_path(curve: str, points: list[float], problem: Problem) -> dict[str, 
 def _judge_way(
     row: Row, points: np.ndarray, problem: Problem, world: World
 ) -> dict[str, tuple[Any, float]]:
-    """Return what the way of a drive says: column -> value and tolerance."""
+    """Return what the way of a drive says: value and tolerance by column."""
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())
     arrived = not math.isnan(row["arrival"])
     joins = (tuple(points[0]), tuple(points[-1])) == (problem.start, problem.target)

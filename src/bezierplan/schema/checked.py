@@ -112,7 +112,7 @@ def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") 
         where = f"; one of your own stands in {home} of the study's folder" if home else ""
         if str(name) in map(str, names):  # a number in quotes, or text without
             name, names = repr(name), map(repr, names)
-        raise Fault(f"{location}: {name}: unknown{suggest_closest(name, names)}{where}")
+        raise Fault(f"{location}: {name}: unknown{describe_known(name, names)}{where}")
 
 
 def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None:
@@ -122,9 +122,9 @@ def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None
         check_known(word, names, location)
 
 
-def suggest_closest(word: Any, names: Iterable[Any]) -> str:
-    """Return `; did you mean ...?` with the known words, or of many the most similar, to end a
-    sentence about an unknown one.
+def describe_known(word: Any, names: Iterable[Any]) -> str:
+    """Return the end of a message about an unknown word: the closest known word, if one is close,
+    and the known words (of more than 40, the ten closest).
     """
     words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)

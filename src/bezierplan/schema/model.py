@@ -29,7 +29,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.checked import Fault, suggest_closest
+from bezierplan.schema.checked import Fault, describe_known
 
 
 class Model(BaseModel):
@@ -49,7 +49,7 @@ class Model(BaseModel):
             )
         for key in content:
             if key not in fields:
-                text = f"{key}: unknown key{suggest_closest(key, fields)}"
+                text = f"{key}: unknown key{describe_known(key, fields)}"
                 raise PydanticCustomError(
                     "unknown_key", "{text}", {"text": text, "key": key, "keys": [*fields]}
                 )
@@ -207,7 +207,7 @@ def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
         return context["text"]
     known = re.findall(r"'([^']*)'", context.get("expected", ""))
     if known and isinstance(value, str):
-        return f"{value}: unknown{suggest_closest(value, known)}"
+        return f"{value}: unknown{describe_known(value, known)}"
     words = _EXPECTED.get(fault["type"])
     wanted = words.format_map(context) if words else context.get("text", fault["msg"])
     of_yaml = isinstance(value, int | float) and "one line" in context.get("text", "")
@@ -260,7 +260,7 @@ def build_number_type(**limits: float | None) -> Any:
 
 
 def limit_whole(low: int, high: int) -> Any:
-    """Return the limits of a whole number, as a field."""
+    """Return a pydantic field for a whole number from `low` to `high`."""
     return Field(ge=low, le=high)
 
 
@@ -365,7 +365,7 @@ def build_choice_type(key: str, models: dict[str, type[Model]]) -> PlainValidato
             raise build_error(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]
         if not isinstance(kind, str) or kind not in models:
-            raise build_error(f"{key}: {kind}: unknown{suggest_closest(kind, models)}")
+            raise build_error(f"{key}: {kind}: unknown{describe_known(kind, models)}")
         return models[kind].model_validate(entry)
 
     return PlainValidator(check)

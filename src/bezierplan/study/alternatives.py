@@ -45,8 +45,8 @@ def find_default(study: Study, assumption: AssumptionEntry) -> Any:
 
 
 def apply_values(study: Study, values: dict[str, Any]) -> Study:
-    """Return the study with other values of some assumptions (id -> value). On a map that they
-    change, the best known path length no longer counts.
+    """Return the study with other values of some assumptions, by id. On a map that they change, the
+    best known path length no longer counts.
     """
     workspaces, problems = dict(study.workspaces), dict(study.problems)
     for assumption in study.assumptions:
@@ -64,7 +64,7 @@ def apply_values(study: Study, values: dict[str, Any]) -> Study:
 
 
 def describe_values(study: Study, values: dict[str, Any]) -> str:
-    """Describe in one line what other values of assumptions (id -> value) change."""
+    """Describe in one line what other values of assumptions, by id, change."""
     details = {each.id: each.detail for each in study.assumptions}
     return "; ".join(f"{details[name]}: {value}" for name, value in values.items())
 

@@ -12,7 +12,7 @@ from bezierplan.figures.caption import (
 )
 from bezierplan.study.definition import Study
 from bezierplan.study.evidence import read_kept
-from bezierplan.study.runs_behind import count_experiment_runs, find_runs_behind
+from bezierplan.study.runs_behind import count_experiment_runs, describe_runs_behind
 
 
 def build_caption(study: Study, artefact: str, scale: str) -> Caption:
@@ -38,11 +38,12 @@ def build_caption(study: Study, artefact: str, scale: str) -> Caption:
         remark = f"In the paper: {study.layout[artefact].says}"
     elif scale == "full" and artefact in study.find_tables_of_runs():
         remark = _describe_means(study, artefact)
-    behind = find_runs_behind(study, artefact, scale)
+    behind = describe_runs_behind(study, artefact, scale)
     return Caption(study.artefact(artefact).title, findings, remark, behind)
 
 
 def _is_untestable(claim: Claim) -> bool:
+    """Return whether a check of the claim is of kind `untestable`."""
     return any(check.test == "untestable" for check in claim.checks)
 
 
@@ -61,7 +62,7 @@ def _describe_claim(study: Study, claim: Claim, row: dict[str, str] | None, scal
 
 
 def _count_runs(study: Study, claim: Claim, scale: str) -> int:
-    """Return the runs of each method that a claim is judged on, in the experiment with the most."""
+    """Return on how many runs of each method a claim is judged, in its experiment with the most."""
     experiments = (name for each in claim.checks if each.primary for name in each.experiments)
     return max((count_experiment_runs(study, name, scale) for name in experiments), default=0)
 

@@ -267,7 +267,7 @@ class Checks:
         """Check that a workspace's map can be read."""
         self.check_names(workspace)
         # Maps of other kinds follow from a problem, and `check_problem` builds them.
-        if not workspace.draws and not workspace.moves:
+        if not workspace.drawn_kind and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
     def check_problem(self, name: str, problem: ProblemEntry) -> None:
@@ -278,13 +278,13 @@ class Checks:
         if self.complete:
             check_all(problem.settings, self.known["setting"], "settings")
         home = self.study.workspace_of(name)
-        for key, needed in (("layouts", bool(home.draws)), ("side", home.with_side)):
+        for key, needed in (("layouts", bool(home.drawn_kind)), ("side", home.with_side)):
             if needed != (getattr(problem, key) is not None):
                 raise Fault(
                     f"workspace: {problem.workspace}: of kind {home.kind}, which "
                     f"{'needs' if needed else 'has no'} {key}"
                 )
-        if home.draws and problem.start is None:
+        if home.drawn_kind and problem.start is None:
             raise Fault(f"start_cell: {problem.start_cell}: expected start: [x, y] in a drawn map")
         self.build_problem(name)
 
@@ -294,7 +294,7 @@ class Checks:
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
         # With fewer circles of the same layout, the ends are free too.
-        drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
+        drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn_kind else {}
         described = build_descriptions(study, {name: problem.plain("layouts") | drawn})
         return problems.build_all(described, study.folder)[0][name]
 

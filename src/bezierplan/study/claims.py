@@ -84,6 +84,7 @@ class AssumptionEntry(Model):
 
     @model_validator(mode="after")
     def _check_setting(self) -> "AssumptionEntry":
+        """Refuse a default beside a setting, and neither of the two."""
         if self.setting is None and self.default is None:
             raise build_error(
                 "default: missing key; the value that runs use, unless it is a setting's"
@@ -121,7 +122,7 @@ class ReadingEntry(Model):
 
     @property
     def folder(self) -> str:
-        """The name of the folder of the reading's results."""
+        """Return the name of the folder of the reading's results."""
         return re.sub("[ ,]+", "_", self.name)
 
 

@@ -46,7 +46,7 @@ class Study(Experiments, ArtefactsFile):
         ]
 
     def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
-        """Return the settings of a method that `values` change, as name -> value.
+        """Return the settings of a method that `values` change, by name.
 
         problem: the settings that change on this problem alone; empty for those that change
         everywhere.
@@ -153,7 +153,7 @@ class Study(Experiments, ArtefactsFile):
         return [shorten_path(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 
     def variants(self) -> dict[str, str]:
-        """Return variant -> the method with whose published numbers it is compared."""
+        """Return the method with whose published numbers each variant is compared, by variant."""
         return {
             name: method.variant_of for name, method in self.methods.items() if method.variant_of
         }

@@ -111,7 +111,7 @@ class Design(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The experiments, as messages name them."""
+        """Return the names of the experiments, as messages show them."""
         return ", ".join(self.experiments)
 
 

@@ -118,6 +118,7 @@ class ProblemEntry(Model):
 
     @model_validator(mode="after")
     def _check_ends(self) -> "ProblemEntry":
+        """Refuse all but one pair of ends, and either layouts or obstacles alone."""
         ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell"}
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}):
             given = " and ".join(sorted(ends)) or "neither"
@@ -166,6 +167,9 @@ class Experiment(Model):
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":
+        """Refuse a chunk above the repeats, `fewer` that are no whole chunks or not fewer, and
+        values that cannot be part of a name.
+        """
         for scale in SCALES:
             if self.chunk[scale] > self.repeats[scale]:
                 most = (
@@ -197,7 +201,7 @@ class Experiment(Model):
 
     @property
     def paired(self) -> bool:
-        """Whether runs with equal repeat numbers share a seed."""
+        """Return whether runs with equal repeat numbers share a seed."""
         return self.seeds != "own"
 
 
@@ -251,7 +255,7 @@ class Paper(Model):
 
     @property
     def where(self) -> str:
-        """Authors, journal, year and link, as far as they are known."""
+        """Return authors, journal, year and link, as far as they are known."""
         parts = [*self.authors, self.journal, self.year, self.link]
         return ", ".join(map(str, filter(None, parts)))
 
@@ -308,8 +312,8 @@ class Experiments(ExperimentsFile):
 
     @classmethod
     def build(cls, folder: Path, content: dict[str, Any]) -> Self:
-        """Return a study in a folder from the checked content of its files. Raises Fault for a
-        baseline with the name of a method.
+        """Build the study in a folder from the checked content of its files; its baselines join its
+        methods. Raises Fault for a baseline with the name of a method.
         """
         for name in content["baselines"].keys() & content["methods"]:
             raise Fault(
@@ -321,16 +325,16 @@ class Experiments(ExperimentsFile):
         return cls.model_construct(key=folder.resolve().name, folder=folder, **content)
 
     def read_accepted_settings(self, method: str) -> dict[str, Any]:
-        """Return the settings that a method's planner accepts, as name -> declaration."""
+        """Return the declarations of the settings that a method's planner accepts, by name."""
         return read_settings(load_planner(self.planner(method)))
 
     @property
     def of_planners(self) -> dict[str, dict[str, Any]]:
-        """Planner -> settings of its methods alone."""
+        """Return the settings that only one planner's methods have, by planner."""
         return {name: each for name, each in self.settings.items() if isinstance(each, dict)}
 
     def resolve_settings(self, method: str) -> dict[str, Any]:
-        """Return all settings of a method, as name -> value.
+        """Return all settings of a method, by name.
 
         Later ones take precedence: the study's that its planner accepts, those of its planner, the
         method's own, and those that other values of assumptions change.
@@ -392,7 +396,7 @@ class Experiments(ExperimentsFile):
         """Return the kind of workspace that planners see in a problem."""
         workspace = self.workspace_of(problem)
         # Planners see what is drawn, or what a file of another format is converted to.
-        return workspace.draws or workspace.gives or workspace.kind
+        return workspace.drawn_kind or workspace.given_kind or workspace.kind
 
     def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
         """Return the descriptions, as plain values, of an experiment's problems that have a repeat;

@@ -31,7 +31,7 @@ from bezierplan.study import alternatives
 from bezierplan.study.captions import build_caption
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import build_descriptions, build_problems_job
-from bezierplan.study.runs_behind import list_methods, list_parts
+from bezierplan.study.runs_behind import list_methods, list_parts_with_runs
 
 Studies = dict[str, Study]
 
@@ -86,8 +86,8 @@ def build_chunk(study: Study, experiment: str, method: str, scale: str, number: 
 def _list_problems(
     study: Study, experiment: str, method: str, scale: str, first: int
 ) -> dict[str, dict]:
-    """Return an experiment's problems that have the repeat `first`, name -> place. Each has those
-    of its settings that the method leaves open.
+    """Return the places of an experiment's problems that have the repeat `first`, by name. Each has
+    those of its settings that the method leaves open.
     """
     accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings.keys()
     met = {}
@@ -101,8 +101,8 @@ def _list_problems(
 
 
 def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range:
-    """Return the numbers of the chunks that hold a method's repeats in an experiment at a scale,
-    under the condition with the most. A method that draws no random numbers has one.
+    """Return the numbers of a method's chunks in an experiment at a scale: enough for its condition
+    with the most repeats. A method that draws no random numbers has one.
     """
     content = study.experiments[experiment]
     if not study.draws(method):
@@ -120,7 +120,7 @@ def list_chunks(study: Study, experiment: str, method: str, scale: str) -> range
 def count_chunks(
     study: Study, experiment: str, methods: Iterable[str], scale: str
 ) -> dict[str, int]:
-    """Return method -> its number of chunks, for some methods of an experiment."""
+    """Return the number of chunks of some methods of an experiment, by method."""
     return {method: len(list_chunks(study, experiment, method, scale)) for method in methods}
 
 
@@ -166,7 +166,9 @@ def group_methods(
 
 
 def find_results(study: Study, artefact: str, scale: str) -> Shows:
-    """Return the results that a table or figure shows: experiment -> method -> number of chunks."""
+    """Return the results that a table or figure shows: by experiment and method, the number of
+    chunks.
+    """
     return {
         name: count_chunks(study, name, methods, scale)
         for name, methods in list_methods(study, artefact).items()
@@ -174,7 +176,7 @@ def find_results(study: Study, artefact: str, scale: str) -> Shows:
 
 
 def choose_looks(study: Study) -> dict[str, str]:
-    """Return method -> the name of its look in each figure."""
+    """Return the name of each method's look in all figures, by method."""
     return style.choose_looks(
         {method: study.planner(method) for method in study.methods}, study.looks
     )
@@ -190,7 +192,7 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
     if getattr(spec, "names_any", False):
         return study.labels | printed
     shown = set()
-    for part in list_parts(spec):
+    for part in list_parts_with_runs(spec):
         content = study.experiments[part.experiment]
         shown |= {*convert_to_list(part.where.get("method", content.methods)), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
@@ -356,7 +358,7 @@ def _describe_runs(artefact: TableEntry | Figure) -> list[Display]:
     """Return how each part of a table or figure selects and shows its runs."""
     return [
         Display(**{name: each for name, each in part.plain().items() if name in list_keys(Display)})
-        for part in list_parts(artefact)
+        for part in list_parts_with_runs(artefact)
     ]
 
 

@@ -18,7 +18,7 @@ import pydantic
 from bezierplan.machine.modules import find_code
 from bezierplan.places import PACKAGE, STUDIES, TREE, find_cache_folder, shorten_path
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, check_all, suggest_closest
+from bezierplan.schema.checked import Fault, check_all, describe_known
 from bezierplan.schema.model import Model, find_names, parse, parse_sound_part
 from bezierplan.schema.safe_text import describe_in_one_line
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile, LayoutFile
@@ -52,7 +52,7 @@ def read_config(config: Mapping[str, Any]) -> Folders:
             known = [location.parent.name for location in STUDIES.glob("*/experiments.yaml")]
             raise Fault(
                 f"{location}: studies: {name}: no experiments.yaml in "
-                f"{shorten_path(folder)}{suggest_closest(name, known)}"
+                f"{shorten_path(folder)}{describe_known(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
     # Settings of a study that is not run now are no fault.
@@ -62,8 +62,8 @@ def read_config(config: Mapping[str, Any]) -> Folders:
 
 
 def read_page_studies(scale_folder: str | Path) -> dict[str, str]:
-    """Return the studies that the page of a scale shows and that have results there: name -> the
-    word that names it in a configuration. Without a page the result is empty.
+    """Return the studies that the page of a scale shows and that have results there: by name, the
+    word that names each in a configuration. Without a page the result is empty.
 
     scale_folder: the folder of the scale.
     """
@@ -264,7 +264,7 @@ def _find_strange_files(folder: Path, workspaces: Mapping[str, Model]) -> list[s
         name for home in workspaces.values() for _, what, name in find_names(home) if what == "file"
     ]
     return [
-        f"{shorten_path(file)}: no file of a study{suggest_closest(file.name, known)}"
+        f"{shorten_path(file)}: no file of a study{describe_known(file.name, known)}"
         # An editor leaves claims.yaml~ behind, but claims.yml is a slip.
         for file in sorted(each for each in folder.glob("*.y*ml*") if each.suffix != ".yaml~")
         if file.name not in (*known, *maps)

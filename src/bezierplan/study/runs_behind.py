@@ -8,14 +8,14 @@ from bezierplan.schema.model import convert_to_list
 from bezierplan.study.definition import Study
 
 
-def list_parts(artefact: TableEntry | Figure) -> list[Any]:
+def list_parts_with_runs(artefact: TableEntry | Figure) -> list[Any]:
     """Return the parts of a table or figure that show runs: the table itself, or some panels."""
     parts = getattr(artefact, "panels", [artefact])
     return [part for part in parts if getattr(part, "experiment", None)]
 
 
 def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
-    """Return experiment -> the methods whose runs a table or figure needs.
+    """Return the methods whose runs a table or figure needs, by experiment.
 
     A table in the paper's form and a figure need the methods that they select, baselines included
     if named; another table needs all, because its comparison shows them.
@@ -28,7 +28,7 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
             )
         return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
-    for panel in list_parts(study.artefact(artefact)):
+    for panel in list_parts_with_runs(study.artefact(artefact)):
         methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))
         needed.setdefault(panel.experiment, set()).update(convert_to_list(methods))
     return {
@@ -37,9 +37,9 @@ def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
     }
 
 
-def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
-    """Return the runs of each method behind a table or figure."""
-    parts, told = list_parts(study.artefact(artefact)), []
+def describe_runs_behind(study: Study, artefact: str, scale: str) -> str:
+    """Describe how many runs of each method are behind a table or figure."""
+    parts, told = list_parts_with_runs(study.artefact(artefact)), []
     for experiment in list_methods(study, artefact):
         content = study.experiments[experiment]
         own = [part.where for part in parts if part.experiment == experiment]
@@ -55,11 +55,13 @@ def find_runs_behind(study: Study, artefact: str, scale: str) -> str:
 
 
 def count_layouts(study: Study, experiment: str, scale: str) -> int:
-    """Return the most layouts that are drawn of a problem of an experiment."""
+    """Return the largest number of layouts that a problem of an experiment has at a scale."""
     problems = (study.problems[name].layouts for name in study.experiments[experiment].problems)
     return max((layouts or {scale: 1})[scale] for layouts in problems)
 
 
 def count_experiment_runs(study: Study, experiment: str, scale: str) -> int:
-    """Return the runs of each method in an experiment, on all layouts of a problem."""
+    """Return how many runs each method has in an experiment, over all layouts of the problem with
+    the most.
+    """
     return study.experiments[experiment].repeats[scale] * count_layouts(study, experiment, scale)

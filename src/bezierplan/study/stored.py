@@ -26,9 +26,7 @@ READINGS, ALTERNATIVES = "readings", "alternatives"
 
 
 def list_places(studies: Studies) -> Studies:
-    """Return place of results -> study, also for the studies under other values of their
-    assumptions.
-    """
+    """Return the studies by place of results, also those under other values of assumptions."""
     by_place = dict(studies)
     for key, study in studies.items():
         for folder, under in (
@@ -146,7 +144,7 @@ def build_verification(
 
 
 def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str, Job]:
-    """Return file -> the job that makes it, for a scale.
+    """Return the job that makes each file of a scale, by file.
 
     files: those in the scale's list. Files that show several studies show those of these files.
     """
@@ -165,7 +163,7 @@ def find_jobs(places: Studies, folder: Path, files: Collection[str]) -> dict[str
 
 
 def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Return study -> the word that locates it, for all studies with results in a scale's folder.
+    """Return the word that locates each study with results in a scale's folder, by study.
 
     config, words: where studies lie; then the page says it, and the working folder is searched
     last. Raises Fault for a study that is in none of these and for a folder of no scale, and

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.schema.checked import suggest_closest
+from bezierplan.schema.checked import describe_known
 from bezierplan.workspaces.limits import (
     SMALLEST_ANGLE,
     SMALLEST_GAP,
@@ -26,7 +26,7 @@ from bezierplan.workspaces.limits import (
     check_numbers,
     check_thickness,
 )
-from bezierplan.workspaces.polygons import Polygons, cross, list_parts, list_rings_of_polygon
+from bezierplan.workspaces.polygons import Polygons, cross, list_polygons, list_rings_of_polygon
 
 if TYPE_CHECKING:
     import shapely
@@ -83,7 +83,7 @@ def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
             kept.append(shape.polygon)
         else:
             logger.warning("%s: beyond the border, and cut there", shape.name)
-            kept += list_parts(shape.polygon.intersection(frame))
+            kept += list_polygons(shape.polygon.intersection(frame))
     return Polygons(limits, tuple(map(list_rings_of_polygon, kept)), unit)
 
 
@@ -157,7 +157,7 @@ def _read_shapes(number: int, feature: Any) -> Iterator[Shape]:
     if role not in ROLES:
         raise ValueError(
             f"feature {number}: properties: role: {role!r}: unknown"
-            f"{suggest_closest(str(role), ROLES)}"
+            f"{describe_known(str(role), ROLES)}"
         )
     name = f"feature {number} ({role})"
     if role not in ("border", "obstacle"):
@@ -241,7 +241,7 @@ def _find_border(
     return limits, [
         Shape(f"{border.name}: outside of it", "obstacle", part)
         for border in borders
-        for part in list_parts(shapely.box(*low, *high).difference(border.polygon))
+        for part in list_polygons(shapely.box(*low, *high).difference(border.polygon))
         if not part.is_empty
     ]
 

@@ -74,7 +74,9 @@ def find_least_energy(grid: Grid, friction: float, closed: bool, start: int, tar
 
 @compile_kernel
 def _build_tables(ground):
-    """Measure the edges between all pairs of cells."""
+    """Measure the edges between all pairs of cells: how many occupied cells they meet, and their
+    energy, both (cells, cells).
+    """
     cells = ground.occupied.size
     # Two bytes are enough for the cells of a map with a table, and save memory.
     encounters, energy = np.empty((cells, cells), np.uint16), np.empty((cells, cells))
@@ -184,10 +186,11 @@ def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.nd
 
 @compile_kernel
 def _find_cheapest(ground, start, target):
-    """Run A* with the straight distance.
+    """Find the least energy from start to target by A*; return it, and the cell before each cell on
+    the cheapest way.
 
-    Returns the least energy from start to target, and the cell before each cell on its way. An edge
-    is examined only if it would be an improvement: on a large map few are.
+    The straight distance guides the search. An edge is examined only if it would be an improvement:
+    on a large map few are.
     """
     cells = ground.occupied.size
     energy = np.full(cells, np.inf)

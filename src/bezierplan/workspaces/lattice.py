@@ -126,7 +126,9 @@ def compute_distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray
 
 @compile_kernel
 def _compute_distances(walls, row, column, steps):
-    """Run Dijkstra's algorithm within a frame of occupied cells, for `compute_distances`."""
+    """Compute the distance of each cell from one by Dijkstra's algorithm; `walls` frames the grid
+    with occupied cells.
+    """
     far = np.full(walls.shape, np.inf)
     far[row, column] = 0.0
     heap = [(0.0, row, column)]

@@ -53,7 +53,7 @@ class Polygons:
         return shapely.box(left, bottom, right, top).difference(self.union())
 
 
-def list_parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
+def list_polygons(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
     """List the polygons of a shape, without points and lines at which others touch."""
     import shapely
 
@@ -64,7 +64,7 @@ def list_rings(shape: "shapely.Geometry") -> list[np.ndarray]:
     """List the boundary of a shape's polygons, open rings (n, 2) with the inside on their left."""
     import shapely
 
-    turned = map(shapely.geometry.polygon.orient, list_parts(shape))
+    turned = map(shapely.geometry.polygon.orient, list_polygons(shape))
     return [ring for part in turned for ring in list_rings_of_polygon(part)]
 
 

@@ -119,7 +119,7 @@ def _read_content(file: Path) -> Content:
         for key in content.keys() - keys:
             # Programs add keys of their own, but a misspelt one would be ignored without a word.
             if difflib.get_close_matches(key.lower(), keys, cutoff=0.7):
-                raise checked.Fault(f"{key}: unknown key{checked.suggest_closest(key, keys)}")
+                raise checked.Fault(f"{key}: unknown key{checked.describe_known(key, keys)}")
         content = {key: entry for key, entry in content.items() if key in keys}
     try:
         return Content.model_validate(content)

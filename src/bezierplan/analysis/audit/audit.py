@@ -271,10 +271,11 @@ def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dic
 
 
 def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Check where means of lengths lie between minimum and maximum: the root mean square distance
-    from the middle, in ranges, beside that of as many sets of normal numbers.
+    """Yield a row for each number of runs: whether mean lengths lie as far from the middle of their
+    range as those of normal numbers.
 
-    Numbers with a tail lie farther from the middle than normal ones.
+    The distance is the root mean square, in ranges, beside that of as many sets of normal numbers.
+    Numbers with a tail lie farther from the middle.
     """
     every = pd.concat(
         table[table["metric"].isin(AT_LEAST_A_LENGTH)].assign(item=name)
@@ -310,11 +311,12 @@ def _measure_from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) ->
 
 
 def check_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Check by Pearson's test that all digits are equally likely among a paper's decimals, if
-    enough of them lie far below the spread of their metric.
+    """Test whether all digits are equally likely among a paper's decimals (Pearson's test), and
+    yield at most one row of the audit.
 
-    A number that several tables repeat counts once; numbers of 1 to n runs, such as counts, are
-    left out, and so are whole numbers, whose means do not have all decimals.
+    Only decimals far below the spread of their metric count; there is no row with fewer than
+    `LEAST_DIGITS` of them. A number that several tables repeat counts once; numbers of 1 to n runs,
+    such as counts, are left out, and so are whole numbers, whose means do not have all decimals.
     """
     from scipy import stats
 

@@ -132,7 +132,7 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     """
     cell = problem.workspace.cell
     apart = [round(abs(b - a) / cell) for a, b in zip(problem.start, problem.target)]
-    places = possible.count_decimals(str(diagonal))
+    places = possible.find_last_place(str(diagonal))
     unit, value = 10.0**-places, value / cell
     # A quotient of decimals may lie just below the whole number that it stands for.
     printed = math.floor(value / unit + _ROUNDING) * unit
@@ -192,7 +192,7 @@ def check_declared_paths(
             if not declared or problem is None:
                 continue
             if entry.diagonal is None:
-                decimals = possible.count_decimals(row["as_printed"])
+                decimals = possible.find_last_place(row["as_printed"])
                 path = find_polylines(problem, row["value"], decimals, entry.edges)
             else:
                 path = find_moves(problem, row["value"], entry.diagonal)

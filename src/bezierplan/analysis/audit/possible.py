@@ -35,13 +35,11 @@ def read_printed(text: str) -> Printed:
     """Read a number with the digits that are printed, such as `7.30`. Raises ValueError if the text
     is no number.
     """
-    return Printed(Fraction(text), Fraction(10) ** -count_decimals(text) / 2)
+    return Printed(Fraction(text), Fraction(10) ** -find_last_place(text) / 2)
 
 
-def count_decimals(text: str) -> int:
-    """Count the digits after the point. In `1.5e3` the last one stands for hundreds, which counts
-    as -2.
-    """
+def find_last_place(text: str) -> int:
+    """Return the decimal place of a printed number's last digit: 2 for `7.30`, -2 for `1.5e3`."""
     digits, _, power = text.strip().lower().partition("e")
     return len(digits.partition(".")[2]) - int(power or 0)
 

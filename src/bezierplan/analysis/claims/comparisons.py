@@ -60,7 +60,7 @@ def _replace_rest(groups: list, rest: list) -> list:
     return list(itertools.chain.from_iterable(parts))
 
 
-def _list_parts(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
+def _list_displays(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
     """List the tables and figure panels among a claim's artefacts that show runs of the check's
     experiments.
     """
@@ -78,7 +78,7 @@ def _list_groups(check: OfRuns, claim: Claim, material: Material) -> list:
     """
     across = check.cells
     groups = []
-    for where in [part.where for part in _list_parts(check, claim, material)] or [{}]:
+    for where in [part.where for part in _list_displays(check, claim, material)] or [{}]:
         if across in where:
             groups += convert_to_list(where[across])
         else:
@@ -191,7 +191,7 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
         runs, problems = material.results[name].runs, material.results[name].problems
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
-            for part in _list_parts(check, claim, material)[:1]:
+            for part in _list_displays(check, claim, material)[:1]:
                 runs = select(runs, part.where)
         else:
             runs = select(runs, conditions)

@@ -101,8 +101,8 @@ class Contrast(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """Return how many units of each cell, out of how many, have a value that can be averaged;
-        fewer if runs failed.
+        """Return as text, such as `28 of 30, 30 of 30`, how many units of each cell have a value
+        that can be averaged; fewer if runs failed.
         """
         found = np.sum(
             [np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0
@@ -161,7 +161,7 @@ class MarkedComparison(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """Return how many units of each cell count (`Contrast.counted`)."""
+        """Return the text of `Contrast.counted`, empty if no runs are compared."""
         return self.comparison.counted if self.comparison else ""
 
 
@@ -213,7 +213,7 @@ def _compute_gradient(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.ndarr
 
 
 def is_on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Return whether the effect points as claimed and exceeds the claimed least effect, if any."""
+    """Tell which effects (...) point as claimed and exceed the claimed least effect, if any."""
     return SIDES[check.direction] * effects > check.least
 
 
@@ -229,7 +229,7 @@ def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarra
 
 
 def is_as_claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Return whether an effect is as the claim says, by its value alone."""
+    """Tell which effects (...) are as the claim says, by their values alone."""
     return load_kind(check).EFFECT.holds(check, effects, margin)
 
 

@@ -154,7 +154,7 @@ def find_threshold(check: ClaimCheck) -> float:
 
 
 def _describe_claim(row: Row, check: ClaimCheck) -> str:
-    """Say what a claim that compares groups says, in each of the comparisons taken together."""
+    """Say the direction that a claim gives, and in how many comparisons taken together."""
     together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
     return f"the claim says {check.direction}{together}"
 
@@ -368,8 +368,8 @@ def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: st
 
 
 class Entry(NamedTuple):
-    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
-    columns), and its mark.
+    """A comparison for its description in words: the values of its factors (`against`, `group`,
+    `in`, columns), and its mark.
     """
 
     factors: Mapping[str, Any]
@@ -442,7 +442,9 @@ def note_disagreement(findings: Sequence[MarkedComparison]) -> str:
 
 
 def _build_key(entry: MarkedComparison) -> tuple:
-    """Build the key of a comparison, the same whichever of those that it takes together decides."""
+    """Return what identifies a comparison: its place, and its terms or, if it combines several, how
+    many.
+    """
     return entry.place, len(entry.parts) or entry.terms
 
 

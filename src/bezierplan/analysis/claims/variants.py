@@ -9,7 +9,7 @@ from bezierplan.schema.model import convert_to_list
 
 
 def list_variants(claim: Claim) -> list[dict[str, Any]]:
-    """List every combination of the values of a claim's variants, column -> value; the first one is
+    """List every combination of the values of a claim's variants, by column; the first one is
     primary.
     """
     return [

@@ -62,7 +62,7 @@ def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
     contrary one does, corrected by Bonferroni for their number. It is negligible if one of them is,
     since the sentence asks for a difference in each.
     """
-    tested = [_give_p(each) for each in findings]
+    tested = [_set_p_by_mark(each) for each in findings]
     against = [number for number, each in enumerate(tested) if each.toward < 0]
     # A finding without p is less sure than one with any p.
     order = {number: 2.0 if math.isnan(each.p) else each.p for number, each in enumerate(tested)}
@@ -79,8 +79,8 @@ def combine_findings(findings: Sequence[Finding]) -> tuple[Finding, int]:
     return findings[decisive]._replace(mark="", p=p, toward=toward, negligible=negligible), decisive
 
 
-def _give_p(finding: Finding) -> Finding:
-    """Give a finding whose mark does not follow from p the p of the same mark."""
+def _set_p_by_mark(finding: Finding) -> Finding:
+    """Set p and side of a finding with a mark of its own; return any other unchanged."""
     if not finding.mark:
         return finding
     toward = {"+": 1, "-": -1}.get(finding.mark, 0)

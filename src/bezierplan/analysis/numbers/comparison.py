@@ -66,8 +66,8 @@ def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
 
 
 def assign_metrics(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
-    """Assign to published numbers the metrics under which a table reads them. reads: the paper's
-    word -> the metric.
+    """Assign to published numbers the metrics under which a table reads them. reads: metrics by the
+    paper's word.
     """
     return published.assign(metric=published["metric"].replace(reads))
 
@@ -174,8 +174,8 @@ def find_position(published: float, low: float, high: float) -> str:
 
 
 def _list_quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
-    """List the metric of each number, and the statistic with which a printed one is compared: the
-    median with one that the paper does not state.
+    """Yield the metric of each number with the statistic to compare it with: the median if the
+    paper states none.
     """
     return zip(numbers["metric"], numbers["statistic"].replace("unstated", "median"))
 

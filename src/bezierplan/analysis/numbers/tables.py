@@ -214,12 +214,12 @@ def build_pivot(
     ]
     decimals = table["decimals"]
     if spec.printed:
-        digits = published["as_printed"].map(possible.count_decimals)
+        digits = published["as_printed"].map(possible.find_last_place)
         # The most frequent number of decimals of a metric; of equally frequent ones the larger.
         usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
         decimals = table["metric"].map(usual).fillna(decimals).astype(int)
         counted = table["statistic"] == "count"
-        needed = map(_count_decimals, values, decimals, counted)
+        needed = map(_choose_decimals, values, decimals, counted)
         decimals = pd.Series([*needed], table.index).groupby(table["table_column"]).transform("max")
     texts = ["" if np.isnan(each) else f"{each:.{n}f}" for each, n in zip(values, decimals)]
     titles = [entry.label for entry in spec.values]
@@ -298,7 +298,7 @@ def _label_level(level: pd.Series, labels: dict[str, str], titles: list[str]) ->
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _count_decimals(number: float, decimals: int, counted: bool) -> int:
+def _choose_decimals(number: float, decimals: int, counted: bool) -> int:
     """Return the given decimals, or more if a number, unless it is counted, needs them for its
     significant digits.
     """

@@ -94,7 +94,7 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
     top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([magnitude, limit, 1e-3])
     axes.set_ylim(-top, top)
     marker = ("^" if side > 0 else "v") if cut else "o"
-    mark = style.mark(marker, 5, style.BLACK, label="largest magnitude")
+    mark = style.build_mark_style(marker, 5, style.BLACK, label="largest magnitude")
     axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
     still = int(frame["value"].isna().sum())
     left_out = f"{still} of {len(frame)} samples left out, where the curve stands still"

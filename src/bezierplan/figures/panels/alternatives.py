@@ -30,10 +30,14 @@ _ROW, _GAP, _WIDTH = 0.125, 0.06, 2.7
 _LETTERS = 50
 
 _LOOKS = {
-    "+": style.mark("o", 3.5, style.BLUE, label="the claim holds"),
-    "?": style.mark("o", 3.5, style.BLACK, markerfacecolor=style.FREE, label="not decided"),
-    "0": style.mark("s", 3.2, style.BLACK, markerfacecolor=style.FREE, label="too small to matter"),
-    "-": style.mark("X", 4.2, style.RED, label="the opposite holds"),
+    "+": style.build_mark_style("o", 3.5, style.BLUE, label="the claim holds"),
+    "?": style.build_mark_style(
+        "o", 3.5, style.BLACK, markerfacecolor=style.FREE, label="not decided"
+    ),
+    "0": style.build_mark_style(
+        "s", 3.2, style.BLACK, markerfacecolor=style.FREE, label="too small to matter"
+    ),
+    "-": style.build_mark_style("X", 4.2, style.RED, label="the opposite holds"),
 }
 
 # Shares that words stand for; `some` needs any share above 0.

@@ -42,9 +42,9 @@ _REACH = 1.5
 # Parts of a box, of which seaborn makes the same box, and those that are marks.
 _BOX = ["low", "quartile1", "median", "quartile3", "high"]
 _MARKS = {
-    "beyond": style.mark(".", 1.6, style.BLUE, alpha=0.6, label="outlier", zorder=1),
-    "mean": style.mark("x", 4, style.RED, label="mean", zorder=4),
-    "published_end": style.mark(
+    "beyond": style.build_mark_style(".", 1.6, style.BLUE, alpha=0.6, label="outlier", zorder=1),
+    "mean": style.build_mark_style("x", 4, style.RED, label="mean", zorder=4),
+    "published_end": style.build_mark_style(
         "_", 9, style.BLACK, label="published minimum and maximum", zorder=5
     ),
     "published": style.PUBLISHED_MARK | {"label": "published mean", "zorder": 5},

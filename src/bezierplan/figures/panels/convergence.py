@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import naming, statistics
+from bezierplan.analysis.measures import extend_histories
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
@@ -121,9 +122,9 @@ def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.Dat
 
     run, names = choose_run(results, pick)
     low, median, high = np.quantile(
-        _extend_histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
+        extend_histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
     )
-    own = np.nan if run is None else _extend_histories(run.to_frame().T, generations)[0]
+    own = np.nan if run is None else extend_histories(run.to_frame().T, generations)[0]
     drawn = {
         "generation": range(generations),
         "objective": own,
@@ -141,7 +142,7 @@ def _build_rows_of_group(group: Results, options: Options, generations: int) -> 
     All generations use the same draws of runs, so that the ends of the interval are smooth lines.
     """
     statistic, hue = options.statistic, options.hue
-    histories = _extend_histories(group.runs, generations)
+    histories = extend_histories(group.runs, generations)
     name = f"convergence/{hue}={group.runs[hue].iloc[0]}"
     centres = statistics.STATISTICS[statistic](histories.T)
     theirs = find_published(group, "objective", options.printed)
@@ -158,17 +159,6 @@ def _build_rows_of_group(group: Results, options: Options, generations: int) -> 
             "high95": ends[1],
             "printed": theirs[0] if last else np.nan,
         }
-
-
-def _extend_histories(runs: pd.DataFrame, generations: int) -> np.ndarray:
-    """Return histories (runs, generations), each extended with its last value."""
-    return np.array(
-        [
-            np.pad(history, (0, generations - len(history)), mode="edge")
-            for history in runs["history"]
-        ],
-        dtype=float,
-    )
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

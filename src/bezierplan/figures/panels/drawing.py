@@ -37,13 +37,13 @@ _LINE = {
     "note": {"color": style.BLACK, "linestyle": "-", "linewidth": 0.7},
 }
 _DOTS = {
-    "start": style.mark("s", 6, style.BLACK),
-    "target": style.mark("*", 10, style.BLACK),
-    "first": style.mark("o", 4.5, style.BLUE),
-    "second": style.mark("^", 5, style.RED),
-    "third": style.mark("D", 4, style.BLACK),
-    "accent": style.mark("X", 6.5, style.RED),
-    "muted": style.mark("o", 3.5, "0.6"),
+    "start": style.build_mark_style("s", 6, style.BLACK),
+    "target": style.build_mark_style("*", 10, style.BLACK),
+    "first": style.build_mark_style("o", 4.5, style.BLUE),
+    "second": style.build_mark_style("^", 5, style.RED),
+    "third": style.build_mark_style("D", 4, style.BLACK),
+    "accent": style.build_mark_style("X", 6.5, style.RED),
+    "muted": style.build_mark_style("o", 3.5, "0.6"),
 }
 
 

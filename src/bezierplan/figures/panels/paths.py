@@ -50,7 +50,7 @@ _WIDEST, _NARROWEST = 2.0, 1.0
 # Curves without points that bend them: the corners of one lie on it, the other has tangents.
 _UNCONTROLLED = ("polyline", "ferguson")
 
-_CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
+_CONTROL_POINT = style.build_mark_style("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
 # In the order of the legend.
 LOOK = {
@@ -59,7 +59,7 @@ LOOK = {
     "points": {**_CONTROL_POINT, "label": "control points"},
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
-    "collision": style.mark("X", 8, style.BLACK, label="first collision", zorder=6),
+    "collision": style.build_mark_style("X", 8, style.BLACK, label="first collision", zorder=6),
     **workspaces.ENDS,
 }
 
@@ -221,7 +221,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
         ends = {"start": [start], "target": [target]}
-        return workspaces.list_points(ends | _list_parts(path, options.control))
+        return workspaces.list_points(ends | _list_points_by_part(path, options.control))
     if options.hue is not None:
         # Each value is a panel of one run.
         alone = options.but(hue=None, control="none")
@@ -252,14 +252,16 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if path is not None:
         if options.context:
             places["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        places |= _list_parts(path, options.control)
+        places |= _list_points_by_part(path, options.control)
         if not run["feasible"]:
             places["collision"] = [curves.point_at(path, run["collision_at"])]
     return workspaces.list_points(places).assign(**names)[[*names, "part", "x", "y"]]
 
 
-def _list_parts(path: Path, control: str) -> dict[str, np.ndarray]:
-    """Return the points (n, 2) of a path by the part that they form."""
+def _list_points_by_part(path: Path, control: str) -> dict[str, np.ndarray]:
+    """Return the points (n, 2) to draw of a path, by part: its curve and, as `control` says, its
+    control points and hull.
+    """
     import shapely
 
     places = {}

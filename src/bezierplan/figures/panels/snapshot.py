@@ -45,8 +45,8 @@ _LOOK: dict[str, dict[str, Any]] = {
     },
     "way": style.RUN_SHOWN | {"zorder": 3.5, "label": "path driven"},
     **workspaces.ENDS,
-    "robot": style.mark("o", 5, style.RED, zorder=5, label="robot"),
-    "collision": style.mark("x", 8, style.BLACK, zorder=6, label="first collision"),
+    "robot": style.build_mark_style("o", 5, style.RED, zorder=5, label="robot"),
+    "collision": style.build_mark_style("x", 8, style.BLACK, zorder=6, label="first collision"),
 }
 
 
@@ -113,7 +113,7 @@ def build_moment(
         parts = [corners, circles]
     else:
         grid = world.workspace(time)
-        parts, bounds = [workspaces.list_parts(grid)], grid.bounds
+        parts, bounds = [workspaces.list_workspace_rows(grid)], grid.bounds
     driven = cut_motion(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
     places = [("way", driven), ("robot", driven[-1:])]
     plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
@@ -143,7 +143,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         # In units of the axes: by default the lengths of arrows are relative to the panel.
         units = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.005}
         axes.quiver(circles["x"], circles["y"], *arrows.T, zorder=2.6, **units)
-        axes.plot([], [], label="velocity", **style.mark(r"$\rightarrow$", 8, style.BLACK))
+        axes.plot(
+            [], [], label="velocity", **style.build_mark_style(r"$\rightarrow$", 8, style.BLACK)
+        )
     for _, plan in frame[frame["part"] == "dropped"].groupby("number"):
         axes.plot(plan["x"], plan["y"], **_DROPPED)
     style.draw_parts(axes, frame, _LOOK, clip_on=False)

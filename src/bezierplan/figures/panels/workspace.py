@@ -47,8 +47,8 @@ _OUTLINE = {
 }
 
 ENDS = {
-    "start": style.mark("s", 7, style.BLACK, label="start", zorder=4.5),
-    "target": style.mark("*", 12, style.BLACK, label="target", zorder=4.5),
+    "start": style.build_mark_style("s", 7, style.BLACK, label="start", zorder=4.5),
+    "target": style.build_mark_style("*", 12, style.BLACK, label="target", zorder=4.5),
 }
 
 Letters = Annotated[list[Line], Field(min_length=2, max_length=2)]
@@ -109,11 +109,11 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
         return _build_table(whole.bounds, _list_cells(whole, workspace, options.numbers))
     if options.numbers != "none" or options.embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
-    return list_parts(workspace)
+    return list_workspace_rows(workspace)
 
 
-def list_parts(workspace: Workspace) -> pd.DataFrame:
-    """Return the rows of a workspace itself, as `data` does, but no numbers."""
+def list_workspace_rows(workspace: Workspace) -> pd.DataFrame:
+    """Return the rows of a workspace, as `data` does, but without numbers."""
     shapes, drawn = workspace, []
     if isinstance(workspace, Grid):
         shapes = workspace.shapes
@@ -221,7 +221,7 @@ def draw_workspace(axes: Axes, home: Workspace, **more: bool) -> None:
         colours = ListedColormap([style.FREE, style.OCCUPIED])
         axes.imshow(home.occupied, colours, origin="lower", extent=home.bounds, vmin=0, vmax=1)
     else:
-        draw_shapes(axes, list_parts(home), **more)
+        draw_shapes(axes, list_workspace_rows(home), **more)
     label_axes(axes, home.unit)
 
 
@@ -251,7 +251,7 @@ def draw_letters(axes: Axes, frame: pd.DataFrame, letters: list[str] | None) -> 
 
 
 def draw_shapes(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
-    """Draw the rows of `data` or `list_parts` to scale, without numbers or axis labels.
+    """Draw the rows of `data` or `list_workspace_rows` to scale, without numbers or axis labels.
 
     outlines: draw only outlines of circles and polygons, because other things fill the panel, such
     as the cells of a grid drawn from them.

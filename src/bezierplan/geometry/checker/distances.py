@@ -212,7 +212,10 @@ def _measure_distance_of_segments(
     a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray
 ) -> float:
     """Return the distance of two segments, 0 if they cross."""
-    if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
+    if (
+        _compute_doubled_area(a, b, c) * _compute_doubled_area(a, b, d) < 0.0
+        and _compute_doubled_area(c, d, a) * _compute_doubled_area(c, d, b) < 0.0
+    ):
         return 0.0
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = a, b, c, d
     return min(
@@ -224,6 +227,6 @@ def _measure_distance_of_segments(
 
 
 @allocation_free
-def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+def _compute_doubled_area(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
     """Return twice the signed area of a triangle, positive if it is counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -64,7 +64,8 @@ def shortest_path(problem: Problem) -> Bound:
 
 
 def least_length(bound: Bound) -> float:
-    """Return the least length of any path that the certified check calls free.
+    """Return the exact shortest length less an allowance: no path that the certified check calls
+    free is shorter, but for the exceptions below.
 
     Parameters
     ----------

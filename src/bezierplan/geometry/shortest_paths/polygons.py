@@ -31,11 +31,10 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
 
 @compile_kernel
 def _search(nodes, before, after, region):
-    """Run the algorithm A* from node 0 to node 1.
+    """Find a shortest path from node 0 to node 1 by A*; return its nodes, none if there is no path.
 
-    Returns the nodes of a shortest path, empty if there is no path. Pairs are tested only when
-    needed: the edges from a node to all others wait in a heap, and each is tested once it is the
-    most promising.
+    Pairs are tested only when needed: the edges from a node to all others wait in a heap, and each
+    is tested once it is the most promising.
 
     before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a
         path may turn in any direction.

@@ -57,10 +57,9 @@ def build_scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scal
 
 @compile_kernel
 def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> np.ndarray:
-    """Run the algorithm A* from start to target.
+    """Find a shortest path from start to target by A*; return its nodes, none if there is no path.
 
-    Returns the nodes of a shortest path, empty if there is no path. Node 0 is the start, node 1 the
-    target, then come the corners.
+    Node 0 is the start, node 1 the target, then come the corners.
 
     ends: (2, 2) start and target in whole numbers.
     points: (n + 2, 2) all nodes in cells.
@@ -243,7 +242,9 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 @allocation_free
 def _find_first_run_beyond(column: int, band: int, scene: Scene) -> int:
-    """Return the first run of a row that ends right of a grid line; the ring's ends each row."""
+    """Return the number of the first run of a row that ends right of a grid line; there is one,
+    because the ring ends each row.
+    """
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
         middle = (low + high) // 2

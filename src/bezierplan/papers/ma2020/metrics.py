@@ -43,8 +43,8 @@ def spare_corners(path: Path, grid: Grid) -> float:
 
 @on_map("u", "length of a polyline without the corners that can be left out", "grid")
 def length_without_spares(path: Path, grid: Grid) -> float:
-    """Return the length of a polyline from which corners are left out, the first that can be at a
-    time.
+    """Return the length of a polyline after its superfluous corners are removed one by one, the
+    first one each time.
 
     NaN for a curve.
     """

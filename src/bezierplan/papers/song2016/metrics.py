@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     feasible_only=True,
 )
 def gap_best(runs: pd.DataFrame, problems: Problems) -> pd.Series:
-    """Return the length over the best one's of the same method and condition, minus 1 (n,)."""
+    """Return how much longer (n,) a path is than the best of its experiment, condition and method,
+    as a share of that.
+    """
     best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
     return runs["length"] / best - 1
 

@@ -168,7 +168,7 @@ def _make_mutant(rng, lattice, path, rules, child, part, marks):
     if rules.mutation == RECONNECT:
         size = join_through_random_cell(rng, lattice, path[first], path[last], part, marks)
     else:
-        size = walk(rng, lattice, path[first], path[last], rules.tries, part, marks)
+        size = forage(rng, lattice, path[first], path[last], rules.tries, part, marks)
     if size == 0:
         return 0
     # Head, new part and tail, each written behind the one before.
@@ -343,10 +343,11 @@ def join_through_random_cell(rng, lattice, first, last, part, marks):
 
 
 @allocation_free
-def walk(rng, lattice, first, last, tries, part, marks):
-    """Forage from one cell until another is reached.
+def forage(rng, lattice, first, last, tries, part, marks):
+    """Walk like a foraging fish from one cell until another is reached, write the cells to `part`
+    and return how many there are.
 
-    Returns the part's size, or 0 if the walk ends early or would exceed the part.
+    It is 0 if the walk ends early or would exceed the part.
     """
     part[0] = first
     marks[first] = 1

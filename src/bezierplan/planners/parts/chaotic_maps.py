@@ -96,7 +96,9 @@ def _get_number(name: str) -> int:
 
 @compile_kernel
 def _compute_sequence(number, start, length, singer_mu):
-    """Compute the fields of a `Sequence`."""
+    """Compute a map's values, how often they were clipped, and where they came to a standstill (0:
+    nowhere).
+    """
     values = np.empty(length)
     clips = 0
     collapsed_at = 0

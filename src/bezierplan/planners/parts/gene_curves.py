@@ -179,7 +179,8 @@ def _look_at_curve(pieces, size, room, scratch):
 
 @compile_inline
 def _look_at_piece(piece, least_parts, room, scratch):
-    """Return `_look_at_curve` of a piece.
+    """Tell from some samples of a piece whether its cells are free, as `_look_at_curve` does for a
+    curve.
 
     First come the ends of at least so many equal parts (fewer only if there are fewer samples),
     then all samples of those parts that come too close to obstacles to tell.
@@ -246,7 +247,8 @@ def _is_free_part(x, y, reach, i, away):
 
 @allocation_free
 def _look_at_samples(x, y, room):
-    """Return `_look_at_curve` of consecutive samples.
+    """Tell from samples (n,) in a row whether their cells are free: `_OCCUPIED`, `_FREE` or
+    `_UNKNOWN`.
 
     `_OCCUPIED` means that one is in an occupied cell; `_FREE` that the cells of all are free, and
     also those whose corner a step between two samples may cut.

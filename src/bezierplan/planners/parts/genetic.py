@@ -54,9 +54,8 @@ def copy(source: np.ndarray, target: np.ndarray) -> None:
 
 @compile_kernel
 def draw_parents(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
-    """Draw parents with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10).
-
-    Returns their indices (draws,).
+    """Draw the indices (draws,) of parents with replacement, in proportion to fitness (n,), all
+    above 0 (song2016, eq. 10).
     """
     wheel = np.cumsum(fitness)
     parents = np.empty(draws, np.int64)

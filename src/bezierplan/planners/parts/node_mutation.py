@@ -53,7 +53,9 @@ def mutate(
         return _mutate_as_reference_21(rng, path, ground, rules, neighbours)
     k = 0
     if rules.mutation == Mutation.proposed:
-        k = _draw_blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
+        k = _draw_place_at_obstacle(
+            rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour
+        )
         if k == 0 and rules.without_obstacle == WithoutObstacle.none:
             return 0
     if k == 0:
@@ -63,7 +65,9 @@ def mutate(
 
 @allocation_free
 def _mutate_until_feasible(rng, path, alleles, ground):
-    """Repeat random mutation until the path is feasible."""
+    """Try random mutations of the path, at most `_MOST_REPAIRS`, and keep the first that makes it
+    feasible.
+    """
     for _ in range(_MOST_REPAIRS):
         k = 1 + draw_below(rng, len(path) - 2)
         before = path[k]
@@ -75,8 +79,12 @@ def _mutate_until_feasible(rng, path, alleles, ground):
 
 
 @allocation_free
-def _draw_blocked_node(rng, path, ground, beside_obstacle):
-    """Draw an inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
+def _draw_place_at_obstacle(rng, path, ground, beside_obstacle):
+    """Draw the place in the path of an inner node whose edge to the next node meets an obstacle, 0
+    if there is none (Table 1, step 1).
+
+    beside_obstacle: instead, of a node with an occupied cell at or around it.
+    """
     count = 0
     for k in range(1, len(path) - 1):
         count += _has_obstacle(path, k, ground, beside_obstacle)
@@ -93,8 +101,8 @@ def _draw_blocked_node(rng, path, ground, beside_obstacle):
 
 @allocation_free
 def _has_obstacle(path, k, ground, beside_obstacle):
-    """Tell whether the edge from node k to the next one meets an obstacle, or whether one of the
-    eight cells around the node is occupied.
+    """Tell whether the edge from node k to the next one meets an obstacle or, with
+    `beside_obstacle`, whether the node's cell or one of the eight around it is occupied.
     """
     if not beside_obstacle:
         return count_obstacles_on(ground, path[k], path[k + 1]) > 0
@@ -104,8 +112,8 @@ def _has_obstacle(path, k, ground, beside_obstacle):
 
 @allocation_free
 def _move_to_best_neighbour(path, k, ground, rules, neighbours):
-    """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4;
-    reference 12), and return how many it compared.
+    """Move node k to the free neighbour cell with the least cost, unless `keep_better` holds and
+    none is better, and return how many were compared (Table 1, steps 2 to 4; reference 12).
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
@@ -136,8 +144,8 @@ def _compute_cost_through(path, k, cell, ground, penalty):
 
 @allocation_free
 def _mutate_as_reference_21(rng, path, ground, rules, neighbours):
-    """Replace a random inner node by the first of its free neighbours, in random order, that lies
-    in the direction of the target and whose two edges are free (reference 21).
+    """Move a random inner node to a free neighbour cell towards the target with two free edges, the
+    first found in random order, if there is one (reference 21).
 
     Returns how many it tried.
     """

@@ -216,7 +216,7 @@ def measure_violation(
 
 @allocation_free
 def _measure_among_polygons(x, y, polygons):
-    """Return the parts of `measure_violation` for polygons."""
+    """Return a path's violation among polygons, and its number of samples in them, both summed."""
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(polygons.deepest)):
@@ -259,7 +259,9 @@ def _measure_depth(x, y, edges):
 
 @allocation_free
 def _measure_among_balls(curve, balls, squares):
-    """Return the parts of `measure_violation` for circles (obstacles, 3)."""
+    """Return a path's violation among circles (obstacles, 3), and its number of samples in them,
+    both summed.
+    """
     samples = curve.shape[1]
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0

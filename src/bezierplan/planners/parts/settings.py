@@ -84,7 +84,7 @@ class Setting(NamedTuple):
 
     @property
     def meaning(self) -> str:
-        """Join the text, the unit and the source in one line."""
+        """Return the text, the unit and the source in one line."""
         text, source, unit = self.about or About("", "")
         return text + (f" [{unit}]" if unit else "") + (f" ({source})" if source else "")
 

@@ -22,7 +22,7 @@ from bezierplan.running.chunk import Settings
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import interface, plain_values, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, suggest_closest
+from bezierplan.schema.checked import Fault, describe_known
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -82,7 +82,7 @@ def check_planner(planner: str, settings: Settings) -> Iterator[ContractFinding]
     if not is_file(planner) and planner not in list_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
-            f".py{suggest_closest(planner, list_planners())}"
+            f".py{describe_known(planner, list_planners())}"
         )
     module = interface.load_planner_module(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")
@@ -187,7 +187,7 @@ def run_planner(
     seeds: Sequence[int],
     hashing: int = 0,
 ) -> dict[str, list[worker.Reply]]:
-    """Run a planner on problems, once with each seed; return problem -> replies. Raises
+    """Run a planner on problems, once with each seed; return its replies by problem. Raises
     PlannerFailure.
 
     hashing: the seed of `hash` in the separate process of a planner's file.
@@ -213,7 +213,7 @@ def run_planner(
 def _check_plans(
     plans: list[Plan], problem: Problem, names: set[str], first: Plan, finite: bool
 ) -> str:
-    """Check that plans fit into the runs table; return how many have a path."""
+    """Check that plans fit into the runs table; return as text how many have a path."""
     for plan in plans:
         answer.accept_answer(plan, problem, names)
         answer.check_columns(plan, first, finite)
@@ -221,15 +221,17 @@ def _check_plans(
 
 
 def _check_history(plans: list[Plan], keeps_best: bool) -> str:
-    """Check the histories of plans, on which there is no detail."""
+    """Check the histories of plans; return an empty text, because there is nothing to report."""
     for plan in plans:
         answer.check_history(plan, keeps_best)
     return ""
 
 
 def _check_budget(plans: list[Plan], budget: float) -> str:
-    """Check the numbers of evaluations, and return them. They may differ from seed to seed: a
-    search may end early.
+    """Check that no plan has more evaluations than the budget, or a longer history than
+    evaluations; return the range of evaluations as text.
+
+    The evaluations may differ from seed to seed: a search may end early.
     """
     used = sorted({plan.evaluations for plan in plans})
     if used[-1] > budget:
@@ -242,8 +244,8 @@ def _check_budget(plans: list[Plan], budget: float) -> str:
 
 
 def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> str:
-    """Return how many claims the checker confirms. A planner that declares itself exact claims no
-    more, and no path leads to a sealed target.
+    """Check that no path leads to a sealed target and that an exact planner claims no path wrongly;
+    return the counts as text.
     """
     feasible = _find_free(plans, problem)
     claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]

@@ -17,7 +17,7 @@ from bezierplan.planners.parts.settings import read_setting
 from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, check_known, suggest_closest
+from bezierplan.schema.checked import Fault, check_known, describe_known
 from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -36,7 +36,7 @@ def load_planner_module(planner: str, location: str) -> ModuleType:
     """
     if is_file(planner):
         try:
-            _describe_file(planner)
+            _read_traits_of_file(planner)
         except PlannerFailure as failure:
             raise Fault(f"{location}: {failure}") from None
     module, fault = import_planner(planner)
@@ -74,16 +74,16 @@ def read_traits(planner: str) -> Traits:
     """
     if is_file(planner):
         try:
-            return _describe_file(planner)
+            return _read_traits_of_file(planner)
         except PlannerFailure as failure:
             raise PlannerFailure(f"planner {planner}: {failure}") from None
     return _read_traits(load_planner(planner))
 
 
 @cache
-def _describe_file(planner: str) -> Traits:
-    """Return the traits of a planner's file. Raises PlannerFailure unless it has the interface of
-    one.
+def _read_traits_of_file(planner: str) -> Traits:
+    """Import a planner's file in another process, and return its traits. Raises PlannerFailure
+    unless it has the interface of one.
     """
     file = str(Path(planner).resolve())
     work = partial(describe_in_process, planner=file)
@@ -196,5 +196,5 @@ def _find_workspaces_fault(kinds: Any) -> str:
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
     for kind in kinds:
         if kind not in KINDS.values():
-            return f"workspaces: {kind}: unknown{suggest_closest(kind, KINDS.values())}"
+            return f"workspaces: {kind}: unknown{describe_known(kind, KINDS.values())}"
     return ""

@@ -76,7 +76,7 @@ class Forks:
 
     @property
     def process(self) -> int | None:
-        """The number of the process that is forked; None before the first."""
+        """Return the number of the process that is forked; None before the first."""
         return self._process and self._process.pid
 
     def start(self) -> None:
@@ -137,11 +137,11 @@ class Forks:
         )
         name = file.get_path_or_uri(secret_free=True)
         work = Snakemake(*(job[each] for each in names))
-        if not self.succeeds(name, source, work, job["bench_record"]):
+        if not self.run_in_fork(name, source, work, job["bench_record"]):
             raise subprocess.CalledProcessError(1, name)
 
-    def succeeds(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
-        """Run a script in a fork, in this process's folder, and return whether it came to its end.
+    def run_in_fork(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
+        """Run a script in a fork, in this process's folder, and return whether its status was 0.
 
         snakemake: the object that scripts know by this name. benchmark: Snakemake's record of time
         and memory. If the fork ends without a report of its own, the log and stderr get a line that

@@ -34,7 +34,7 @@ def follow(
     checks = policy.replan == "when_blocked"
     while True:
         free = (
-            measure_free_length(world.workspace(time), way, max(s, out))
+            find_blocked_length(world.workspace(time), way, max(s, out))
             if checks or policy.waits
             else math.inf
         )
@@ -88,9 +88,9 @@ def find_next_event(world: ChangingCells, time: float, policy: Policy) -> float:
     return float(min(changes.min(initial=math.inf), due, world.end))
 
 
-def measure_free_length(grid: Grid, way: Way, s: float) -> float:
-    """Return the length at which a way, from length `s` on, first enters an occupied cell; infinite
-    if never.
+def find_blocked_length(grid: Grid, way: Way, s: float) -> float:
+    """Return the length along a way, from its beginning, at which it first enters an occupied cell
+    after `s`; infinite if never.
     """
     points = way.part(s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))

@@ -53,7 +53,7 @@ class Ride(NamedTuple):
 
     @property
     def replans(self) -> int:
-        """Number of plans after the first."""
+        """Return the number of plans after the first."""
         return len(self.plans) - 1
 
 

@@ -25,7 +25,7 @@ class Way(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Length of the whole way."""
+        """Return the length of the whole way."""
         return float(self.at[-1])
 
     def place(self, s: np.ndarray | float) -> np.ndarray:
@@ -99,8 +99,10 @@ def build_drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
 
 
 def _halve_chords(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
-    """Return points (m, 2) of a path: those given (n, 2), at parameters (n,) as in
-    `curves.point_at`, and more where chords enter an obstacle.
+    """Add points of a path between given ones (n, 2) where their chord enters an obstacle; return
+    all points (m, 2).
+
+    at: parameters (n,) of the given points, as in `curves.point_at`.
     """
     corners = [points[0]]
     # A stack with the first chord on top, so that points come out in order.
@@ -127,7 +129,7 @@ def _is_free(points: np.ndarray, obstacles: Region) -> bool:
 
 
 def find_first_collision(points: np.ndarray, obstacles: Region) -> float:
-    """Return where a polyline (n, 2) first enters an obstacle, as number of the chord and share of
+    """Return where a polyline (n, 2) first enters an obstacle: the chord's number plus the share of
     it; infinite if never.
     """
     chords = np.stack([points[:-1], points[1:]], axis=1)

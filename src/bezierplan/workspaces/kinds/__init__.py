@@ -102,14 +102,14 @@ CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 class Workspace(Model):
     """Keys common to all workspaces, and facts about a kind.
 
-    draws: for a random workspace, the kind that planners see.
-    gives: for one converted from files of another format, the kind that planners see.
+    drawn_kind: for a random workspace, the kind that planners see.
+    given_kind: the same for any other, unless the name of the kind says it.
     with_side: true if its problems have a `side`.
     moves: true for a world, in which runs are simulated drives.
     """
 
-    draws: ClassVar[str | None] = None
-    gives: ClassVar[str | None] = None
+    drawn_kind: ClassVar[str | None] = None
+    given_kind: ClassVar[str | None] = None
     with_side: ClassVar[bool] = False
     moves: ClassVar[bool] = False
 
@@ -170,7 +170,7 @@ def kinds() -> dict[str, type[Workspace]]:
     """Return the keys of descriptions by kind of workspace: fixed, then random, then worlds."""
     found = {name: load_module(place).Options for name, place in _places().items()}
     return dict(
-        sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].draws), each[0]))
+        sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn_kind), each[0]))
     )
 
 

@@ -31,6 +31,7 @@ class Change(Model):
 
     @model_validator(mode="after")
     def _check_moment(self) -> Change:
+        """Refuse both or neither of after and at."""
         if len(self.model_fields_set & {"after", "at"}) != 1:
             raise build_error("expected either after or at")
         return self
@@ -39,7 +40,7 @@ class Change(Model):
 class Options(World):
     """Keys of a workspace of kind `changing_cells`."""
 
-    gives: ClassVar[str] = "grid"
+    given_kind: ClassVar[str] = "grid"
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")

@@ -29,7 +29,7 @@ class Options(Workspace):
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
     @property
-    def draws(self) -> str:  # type: ignore[override]
+    def drawn_kind(self) -> str:  # type: ignore[override]
         """Return the kind of workspace that planners see."""
         return self.sees
 

@@ -21,7 +21,7 @@ MovingCircle = Annotated[list[Number], of_length(5, "[x, y, radius, x velocity, 
 class Options(World):
     """Keys of a workspace of kind `moving_circles`."""
 
-    gives: ClassVar[str] = "circles"
+    given_kind: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
     circles: list[MovingCircle] = Field(

@@ -29,7 +29,7 @@ def _is_radius(entry: Any) -> bool:
 class Options(Workspace):
     """Keys of a workspace of kind `random_circles`."""
 
-    draws: ClassVar[str] = "circles"
+    drawn_kind: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
     radius: Annotated[Any, build_value_type(_is_radius, RADIUS)] = Field(description=RADIUS)

@@ -14,7 +14,7 @@ from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, p
 class Options(Workspace):
     """Keys of a workspace of kind `raster`."""
 
-    gives: ClassVar[str] = "grid"
+    given_kind: ClassVar[str] = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
     margin: NotNegative | None = Field(None, description=MARGIN)

@@ -13,7 +13,7 @@ from bezierplan.workspaces.kinds import UNKNOWN, File, Workspace, naming
 class Options(Workspace):
     """Keys of a workspace of kind `ros_map`."""
 
-    gives: ClassVar[str] = "grid"
+    given_kind: ClassVar[str] = "grid"
 
     file: File = Field(description="the YAML file of a map_server map in the study's folder")
     unknown: ros.Unknown = Field("occupied", description=UNKNOWN)

@@ -14,7 +14,7 @@ from pydantic import Field
 from bezierplan.analysis.claims.check import EXPERIMENT, ClaimCheck
 from bezierplan.analysis.claims.effects import Finding, Terms
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.schema.checked import Fault, suggest_closest
+from bezierplan.schema.checked import Fault, describe_known
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
@@ -52,8 +52,8 @@ class Options(ClaimCheck):
 
 
 def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
-    """Call the function of a study and return its finding. Raises Untestable if the experiment was
-    not run, Fault if there is no function of that name.
+    """Call the study's function that a check names, and return its finding. Raises Untestable if
+    the experiment was not run, Fault if there is no function of that name.
     """
     for experiment in check.experiments:
         if experiment not in material.results:
@@ -61,7 +61,7 @@ def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Ter
     if check.name not in material.functions:
         raise Fault(
             f"claim {claim.id}: function {check.name}: "
-            f"unknown{suggest_closest(check.name, material.functions)}"
+            f"unknown{describe_known(check.name, material.functions)}"
         )
     function = material.functions[check.name]
     mark, effect, interval, n = function(

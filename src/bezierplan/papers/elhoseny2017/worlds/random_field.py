@@ -12,7 +12,7 @@ from bezierplan.workspaces.kinds import Workspace
 class Options(Workspace):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "grid"
+    drawn_kind: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
     radius: Positive = Field(

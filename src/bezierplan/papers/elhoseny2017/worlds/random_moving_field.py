@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Options(RandomMoving):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "grid"
+    drawn_kind: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
     radius: Positive = Field(

@@ -26,7 +26,7 @@ _SAME_LENGTH = 1e-4
 class Options(Workspace):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "grid"
+    drawn_kind: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
     largest_block: Count = Field(

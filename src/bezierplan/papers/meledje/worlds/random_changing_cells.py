@@ -24,7 +24,7 @@ _MOST_CHANGES = 1000
 class Options(World):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "grid"
+    drawn_kind: ClassVar[str] = "grid"
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")

@@ -26,8 +26,10 @@ _STEPS = 16
 
 _LOOK = {
     "minimum": style.HOLLOW | {"label": "local minimum"},
-    "lowest": style.mark("X", 7, style.RED, markeredgecolor=style.FREE, label="lowest value"),
-    "fixed": style.mark(
+    "lowest": style.build_mark_style(
+        "X", 7, style.RED, markeredgecolor=style.FREE, label="lowest value"
+    ),
+    "fixed": style.build_mark_style(
         "o", 4.5, style.BLUE, markerfacecolor=style.FREE, label="fixed control point"
     ),
     **workspaces.ENDS,

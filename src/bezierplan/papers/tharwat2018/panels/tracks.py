@@ -32,7 +32,7 @@ _LINES = [
         (style.BLACK, style.RED, style.BLUE, style.AMBER, "0.5"), style.LOOKS.values()
     )
 ]
-_FIRST = style.mark(
+_FIRST = style.build_mark_style(
     "o", 7, style.BLUE, markerfacecolor="none", markeredgewidth=1.3, label="first position"
 )
 
@@ -109,7 +109,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     notes = []
     for (run, way), name, look in zip(frame.groupby("run"), _NAMES, _LINES):
         axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, label=name, **look)
-        cross = style.mark("X", 7, look["color"], markeredgecolor=style.FREE, label="last position")
+        cross = style.build_mark_style(
+            "X", 7, look["color"], markeredgecolor=style.FREE, label="last position"
+        )
         for end, mark in ((way[:1], _FIRST), (way[-1:], cross)):
             axes.plot(end["x"], end["y"], zorder=6, **mark)
         repeat, length = run.rpartition("/")[2], way["length"].iloc[0]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Options(RandomMoving):
     """Keys of a workspace."""
 
-    draws: ClassVar[str] = "circles"
+    drawn_kind: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
     radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
@@ -27,7 +27,7 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Draw the first so many circles of a layout, as where nothing moves.
+    """Draw a layout's moving circles, and keep the first `obstacles` of them.
 
     Raises ValueError if no free place is found.
     """
