@@ -33,18 +33,18 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "Medians over the problems; methods with the fewest free paths come first. The rounded "
-    "shortest path turns no tighter than the median of the method's paths without corners. The "
-    "next column counts the problems in which the method is shorter than that, or turns more "
-    "gently than any rounded shortest path."
+    "Medians over the problems; methods with the fewest free paths come first. Lengths are those "
+    "of the curves, not numbers of cells. The rounded shortest path turns no tighter than the "
+    "median of the method's paths without corners. The method beats it if it is shorter, or turns "
+    "more gently than any rounded shortest path."
 )
 OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
     "that the paper is wrong."
 )
 RANGE = (
-    "Our range: where 95 % of experiments of the paper's size end when our program makes them. It "
-    "is too wide if at least half of the paper's other numbers of the same kind lie in it too."
+    "Our range: our program repeats the paper's whole experiment many times; 95 % of the results "
+    "lie in it."
 )
 LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
 
@@ -144,8 +144,9 @@ def build_paper_page(
     tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
-    heads |= {"where_it_holds": "where it holds"}
-    main = claims.loc[claims["primary"] & claims["main"].astype(bool), [*heads]].fillna("")
+    heads |= {"where_it_holds": "where it holds, or why that is open"}
+    main = claims[claims["primary"] & claims["main"].astype(bool)].fillna("")
+    main = main.assign(where_it_holds=main.apply(explain_verdict, axis=1))[[*heads]]
     parts = [
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
@@ -160,6 +161,20 @@ def build_paper_page(
         laid = _place_beside(ours, numbers.dropna(subset="table_row"), heads)
         parts += [f"## {naming.format_heading(name)}: {table_title}", write_table(laid)]
     return "\n\n".join(parts) + "\n"
+
+
+def explain_verdict(claim: pd.Series) -> str:
+    """Return where a claim holds, or the first sentence of the reason if that is open.
+
+    >>> told = {"verdict": "depends", "where_it_holds": "", "reason": "partly (O1: 2). It is so."}
+    >>> explain_verdict(pd.Series(told))
+    'partly'
+    """
+    if claim["verdict"] not in ("depends", "untestable"):
+        return claim["where_it_holds"]
+    # What a reading changes stands in brackets: the list of claims has it.
+    without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", claim["reason"])
+    return re.split(r"\.(?: (?=[A-Z])|$)", without)[0]
 
 
 def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
@@ -191,10 +206,12 @@ def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
 
 def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
     """Return a table with the printed number before our range in each cell, or before ours."""
-    cells = ours.iloc[:, heads:].to_numpy()
+    values = ours.iloc[:, heads:]
+    # The paper prints nothing in these cells.
+    cells = values.map(lambda text: f"– ours {text}" if text else "").to_numpy()
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        text = comparison.describe_range(number) or f"ours {cells[place]}"
+        text = comparison.describe_range(number) or f"ours {values.iat[place]}"
         cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     head = ", ".join(filter(str.strip, ours.columns[:heads])) or "row"
@@ -230,12 +247,14 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     """
     rows = methods.group_by_family(of_problems)
     rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
-    none = int((rows["adds"] == 0).sum())
-    return (
+    others = rows[rows["adds"] > 0]
+    told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{none} of {naming.format_count(len(rows), 'kind')} of scenarios with smooth paths, no "
-        "method of a paper is smoother, or shorter at equal smoothness."
+        f"{len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios with "
+        "smooth paths, no method of a paper is smoother, or shorter at equal smoothness"
     )
+    beaten = " and ".join(f"{each.adds:.0f} of {each.both:.0f}" for each in others.itertuples())
+    return f"{told}; in the others, one is in {beaten} problems." if beaten else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:

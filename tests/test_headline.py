@@ -45,8 +45,9 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         )
     ) == (
         "Of 3 printed numbers our range is narrow enough to test 2: 1 lie inside it, 1 outside. "
-        "For the other 1 it is so wide that almost any number would fit. 1 of the 3 depend on a "
-        "map that the paper does not print: inside or outside, these prove nothing."
+        "The other 1 it cannot test: it also holds at least half of the paper's other numbers of "
+        "the same kind. 1 of the 3 are about maps that we made, because the paper prints none: "
+        "inside or outside, these prove nothing."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

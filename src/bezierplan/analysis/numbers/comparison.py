@@ -45,7 +45,8 @@ SIGNS = {"below": "▼▽", "inside": "●○", "above": "▲△"}
 """Position -> its sign in print, and that beside a range that is too wide to tell."""
 SIGNS_MEAN = (
     "First the printed number, then the range of ours (95 % of experiments of the paper's size): "
-    "● inside, ▲ above it, ▼ below it; hollow signs: our range is too wide to tell"
+    "● inside, ▲ printed number above it, ▼ below it; a hollow sign tells little, because our "
+    "range also holds at least half of the paper's other numbers of the same kind"
 )
 
 FITTED = "we fitted something to it"

@@ -157,8 +157,8 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
                 f"{row.cornered:.0f} of {row.round + row.cornered:.0f}" for row in rows.itertuples()
             ],
             "longer than the shortest by": [*map(_format_share, rows["excess"])],
-            "rounded shortest path, turning as gently": [*map(_format_share, rows["rounded"])],
-            "shorter or smoother than that": [
+            "rounded shortest path, as gentle, by": [*map(_format_share, rows["rounded"])],
+            "problems in which the method beats it": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
                 for row in rows.itertuples()
             ],

@@ -26,11 +26,14 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         f"to test {len(told)}: {inside} lie inside it, {len(told) - inside} outside."
     )
     if vague := len(numbers) - len(told):
-        text += f" For the other {vague} it is so wide that almost any number would fit."
+        text += (
+            f" The other {vague} it cannot test: it also holds at least half of the paper's other "
+            "numbers of the same kind."
+        )
     if ours := int((numbers["reason"] == comparison.NO_MAP).sum()):
         text += (
-            f" {ours} of the {len(numbers)} depend on a map that the paper does not print: inside "
-            "or outside, these prove nothing."
+            f" {ours} of the {len(numbers)} are about maps that we made, because the paper prints "
+            "none: inside or outside, these prove nothing."
         )
     return text
 
