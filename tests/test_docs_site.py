@@ -207,7 +207,7 @@ CLICKS = [
     ("two methods on one map", ["Which method should I use?"], "A method plans on any map that"),
     ("MGA's mutation", ["Which method should I use?", "MGA (Elhoseny 2017)"], "Mutation."),
     ("a map of Ma", ["Ma 2020"], "environment2.txt"),
-    ("what did you find about Tharwat 2018", ["Tharwat 2018"], "Chaos does not help"),
+    ("what did you find about Tharwat 2018", ["Tharwat 2018"], "Chaos seldom helps"),
     ("may I cite it and how", ["May I cite it, and how?"], "@misc{bezierplan"),
     ("Table 2 of Elhoseny beside yours", ["Elhoseny 2017"], "Proposed Method"),
     ("which planner for a maze", ["Which method should I use?"], "A maze"),
