@@ -164,7 +164,7 @@ def build_paper_page(
 
 
 def explain_verdict(claim: pd.Series) -> str:
-    """Return where a claim holds, or the first sentence of the reason if that is open.
+    """Return where a claim holds, or the first part of the reason if that is open.
 
     >>> told = {"verdict": "depends", "where_it_holds": "", "reason": "partly (O1: 2). It is so."}
     >>> explain_verdict(pd.Series(told))
@@ -174,7 +174,7 @@ def explain_verdict(claim: pd.Series) -> str:
         return claim["where_it_holds"]
     # What a reading changes stands in brackets: the list of claims has it.
     without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", claim["reason"])
-    return re.split(r"\.(?: (?=[A-Z])|$)", without)[0]
+    return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
 
 
 def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:

@@ -143,13 +143,13 @@ def under(**verdicts):
             {"slow": "undecided", "far": "contradicted"},
             "depends",
             "undecided under slow; contradicted under far",
-            "supported by default, contradicted under far (How far: 3). Why",
+            'supported by default, contradicted under "far" (How far: 3). Why',
         ),
         (
             {"slow": "no effect"},
             "depends",
             "no effect under slow",
-            "supported by default, no effect under slow (How fast: 2). Why",
+            'supported by default, no effect under "slow" (How fast: 2). Why',
         ),
     ],
 )
@@ -168,7 +168,7 @@ def test_a_claim_depends_on_a_variant_with_any_other_verdict():
     claims = CLAIMS.assign(verdict=["supported", "partly", "supported", "undecided"])
     found = by_reading.add_dependence(claims, {}, {}, {"metric=length": "metric length"})
     assert [*found["verdict"]] == ["depends", "partly", "supported", "undecided"]
-    assert found["reason"][0] == "supported by default, partly with metric length. Why"
+    assert found["reason"][0] == 'supported by default, partly with "metric length". Why'
     assert {*found["readings"]} == {""}
 
 

@@ -75,7 +75,7 @@ def add_dependence(
         # A reading that only turns supported into partly is on the same side.
         side = SIDES[claim["verdict"]]
         words += [
-            f"{verdict} under {name} ({meanings[name]})"
+            f'{verdict} under "{name}" ({meanings[name]})'
             for name, verdict in own.items()
             if SIDES.get(verdict, side) != side
         ]
@@ -88,7 +88,9 @@ def add_dependence(
 
 def _join_names(names: list[str]) -> str:
     """Join the names of variants, or count them if they are many."""
-    return " or ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} variants"
+    if len(names) > MOST_NAMED:
+        return f"{len(names)} variants"
+    return " or ".join(f'"{name}"' for name in names)
 
 
 def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) -> pd.DataFrame:
