@@ -149,18 +149,6 @@ def max_curvature(path: Path) -> float:
     return float(np.nan_to_num(np.abs(sample_curvature(path))).max())
 
 
-@of_path(
-    "1/u", "bending energy: integral of the squared curvature along the path, corners left out"
-)
-def bending_energy(path: Path) -> float:
-    """Integrate the squared curvature over the arc length, in 1/unit, by the trapezoidal rule over
-    `CURVATURE_SAMPLES` samples; curvature counts as 0 where the speed is zero.
-    """
-    squared = np.nan_to_num(sample_curvature(path)) ** 2
-    steps = np.hypot(*np.diff(sample_path(path, CURVATURE_SAMPLES), axis=0).T)
-    return float(((squared[1:] + squared[:-1]) / 2 * steps).sum())
-
-
 @of_path("1/u", "largest jump of curvature over the joints, infinite at a corner")
 def curvature_jump(path: Path) -> float:
     """Return the largest jump of curvature over a path's joints, in 1/unit."""

@@ -3,8 +3,7 @@ need no runs.
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
 (`metrics.Metric`): `check_statistics` checks the statistics of one cell, `check_ranks` mean ranks,
-`check_orders` the order of rows, `check_middles` means of lengths within their ranges,
-`check_digits` all decimals.
+`check_orders` the order of rows, `check_digits` all decimals.
 `analysis.possible` has the closed forms.
 """
 
@@ -25,7 +24,6 @@ from bezierplan.analysis.results import group_rows, list_key_columns, read_print
 from bezierplan.analysis.table_kinds import Monotone, Pivot
 from bezierplan.running import problems
 from bezierplan.running.inputs import Files
-from bezierplan.workspaces.seeds import generator
 
 # Statistics that need not be the value of any single path.
 _SPREADS = ("std", "iqr", "range")
@@ -43,12 +41,6 @@ then each digit is about equally likely, whatever is measured.
 
 LEVEL = 0.05
 """The level of Friedman's test."""
-
-LEAST_MEANS = 5
-"""Means beside minimum and maximum that a paper needs."""
-
-DRAWN = 2000
-"""Sets of normal numbers from which the distribution of means within their ranges is drawn."""
 
 DIGITS_LEVEL = 0.01
 """Decimals are inconsistent if chance makes digits as uneven less often."""
@@ -101,7 +93,7 @@ def check_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) ->
         rows += check_ranks(name, table, specs[name].across)
         for rule in specs[name].monotone:
             rows += check_orders(name, table, rule)
-    return [*merge_rows(rows), *check_middles(tables), *check_digits(tables)]
+    return [*merge_rows(rows), *check_digits(tables)]
 
 
 def check_statistics(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
@@ -268,46 +260,6 @@ def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dic
             where = describe_cell(row, [*keys, "metric", "statistic"])
             told = f"{before['as_printed']} {sign} {row['as_printed']}"
             yield build_audit_row(item, where, words, row["value"], before["value"], fits, told)
-
-
-def check_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Yield a row for each number of runs: whether mean lengths lie as far from the middle of their
-    range as those of normal numbers.
-
-    The distance is the root mean square, in ranges, beside that of as many sets of normal numbers.
-    Numbers with a tail lie farther from the middle.
-    """
-    every = pd.concat(
-        table[table["metric"].isin(AT_LEAST_A_LENGTH)].assign(item=name)
-        for name, table in tables.items()
-    )
-    keys = [
-        column for column in every if column not in ("statistic", "value", "as_printed", "unit")
-    ]
-    for n, own in every.groupby("n"):
-        # As text, because a pivot would lose rows in which a key is empty.
-        filled = own.astype(dict.fromkeys(keys, str))
-        wide = filled.pivot_table("value", keys, "statistic")
-        wide = wide.reindex(columns=["min", "mean", "max"]).dropna()
-        if len(wide) < LEAST_MEANS or n < 2:
-            continue
-        apart, count = float(_measure_from_middle(*wide.to_numpy().T)), len(wide)
-        drawn = generator(f"audit/middles/{n:g}").normal(size=(DRAWN, count, int(n)))
-        sets = _measure_from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
-        # Only means too near the middle are suspicious: a tail takes true ones away from it.
-        p, median = float(np.mean(sets <= apart)), float(np.median(sets))
-        rule = f"means of {n:g} lengths lie as far from the middle of their range as normal ones do"
-        told = f"{apart:.3g} ranges, normal ones {median:.3g}; p = {p:.2g}"
-        where = f"{count} means between minimum and maximum"
-        items = ", ".join(wide.index.unique("item"))
-        yield build_audit_row(items, where, rule, apart, median, p >= DIGITS_LEVEL, told)
-
-
-def _measure_from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Measure how far means (..., k) lie from the middle of their ranges: root mean square, in
-    ranges.
-    """
-    return np.sqrt(np.mean(((mean - low) / (high - low) - 0.5) ** 2, axis=-1))
 
 
 def check_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
