@@ -469,8 +469,12 @@ class Checks:
 
     def check_panel(self, panel: Panel) -> None:
         """Check that a panel's runs are of the kind that it shows, and of one method if it shows
-        one run.
+        one run, and that its claim rests on runs.
         """
+        shown = {getattr(panel, "claim", None)} - self.invalid
+        for claim in [each for each in self.study.claims if each.id in shown]:
+            if not is_judged(claim):
+                raise Fault(f"claim: {claim.id}: rests on times or on no runs, so nothing turns it")
         if not (experiment := getattr(panel, "experiment", None)):
             return
         if panel.drives and not self.study.moves(experiment):
