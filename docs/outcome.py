@@ -80,7 +80,7 @@ def main() -> None:
         for key, study in studies.items()
     }
     titles = {key: study.title for key, study in studies.items()}
-    shutil.copyfile(FULL / IDENTIFIED_PATHS, KEPT / "identified.png")
+    shutil.copyfile(RESULTS / IDENTIFIED_PATHS, KEPT / "identified.png")
     copy_tables(titles, settings)
     answers = fill_texts(KEPT, {key: study.verdict_file() for key, study in studies.items()})
     pd.DataFrame(
@@ -145,7 +145,8 @@ def build_paper_page(
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds, or why that is open"}
-    main = claims[claims["primary"] & claims["main"].astype(bool)].fillna("")
+    shown = claims["primary"] & claims["main"].astype(bool)
+    main = claims.loc[shown, [*heads, "reason"]].fillna("")
     main = main.assign(where_it_holds=main.apply(explain_verdict, axis=1))[[*heads]]
     parts = [
         f"# {title}",
