@@ -471,9 +471,8 @@ class Checks:
         """Check that a panel's runs are of the kind that it shows, and of one method if it shows
         one run, and that its claim rests on runs.
         """
-        shown = {getattr(panel, "claim", None)} - self.invalid
-        for claim in [each for each in self.study.claims if each.id in shown]:
-            if not is_judged(claim):
+        for claim in self.study.claims:
+            if claim.id == getattr(panel, "claim", None) and not is_judged(claim):
                 raise Fault(f"claim: {claim.id}: rests on times or on no runs, so nothing turns it")
         if not (experiment := getattr(panel, "experiment", None)):
             return

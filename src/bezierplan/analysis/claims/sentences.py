@@ -121,9 +121,10 @@ def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: 
 
 def join_notes(*notes: str) -> str:
     """Join notes to sentences; the first begins as it stands, and empty ones are left out."""
-    said = [*filter(None, notes)]
-    capital = [*said[:1], *(f"{each[:1].upper()}{each[1:]}" for each in said[1:])]
-    return ". ".join([*(each.rstrip(".") for each in capital[:-1]), *capital[-1:]])
+    text = ""
+    for note in filter(None, notes):
+        text = f"{text.rstrip('.')}. {note[0].upper()}{note[1:]}" if text else note
+    return text
 
 
 def describe_count(claim: Claim | None, verdict: str, count: str | None) -> str:
