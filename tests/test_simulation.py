@@ -395,6 +395,13 @@ def test_a_robot_checks_no_farther_than_its_horizon():
     assert seen.replans > unseen.replans
 
 
+@pytest.mark.parametrize(("beyond", "outside"), [(1e-4, True), (2e-9, True), (0.0, False)])
+def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
+    points = np.array([[1.0, 10.0], [20.0 + beyond, 10.0], [1.0, 10.0]])
+    verdict = motion_check.check(Motion(points, np.array([0.0, 19.0, 38.0])), circles())
+    assert math.isfinite(verdict.collision_at) == outside
+
+
 @pytest.mark.parametrize(
     ("dx", "dy", "ex", "ey", "nearest"),
     [

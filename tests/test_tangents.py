@@ -1,5 +1,5 @@
-"""Exact shortest paths around circles against a plain graph of all tangents: what a search leaves
-out changes nothing.
+"""Exact shortest paths around circles against a plain graph of all tangents, to the last bit: what
+a search leaves out changes nothing.
 """
 
 import itertools
@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-import shapely
 from fields import assert_is_bound
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
@@ -18,64 +17,115 @@ from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-# An arc is free if its middle and so many other points are.
-ALONG = np.linspace(0, 1, 51)[1:-1]
+
+def outer(circles):
+    """Centres and radii without circles in other circles; of equal ones the first is kept."""
+    table = [(x, y, r) for (x, y), r in zip(circles.centres.tolist(), circles.radii.tolist())]
+    table = list(dict.fromkeys(table))
+    kept = [
+        one
+        for one in table
+        if not any(math.dist(one[:2], it[:2]) + one[2] <= it[2] for it in table if it != one)
+    ]
+    table = np.array(kept).reshape(-1, 3)
+    return table[:, :2], table[:, 2]
 
 
-def list_tangents(centres, radii):
-    """Circles that a tangent joins, and the angles at which it touches each."""
+def nodes_of(problem, centres, radii):
+    """Positions, circles and angles of the ends of all tangents, and the pairs that they join."""
+    nodes, pairs = [(*problem.start, -1, 0.0), (*problem.target, -1, 0.0)], [(0, 1)]
+
+    def add(k, angle):
+        x, y = centres[k]
+        nodes.append((x + radii[k] * math.cos(angle), y + radii[k] * math.sin(angle), k, angle))
+        return len(nodes) - 1
+
+    for end, (x, y) in enumerate((problem.start, problem.target)):
+        for k, ((to_x, to_y), radius) in enumerate(zip(centres, radii)):
+            distance = math.hypot(x - to_x, y - to_y)
+            half = 0.0 if distance <= radius + TOLERANCE else math.acos(radius / distance)
+            for side in (-1, 1) if half else (1,):
+                pairs.append((end, add(k, math.atan2(y - to_y, x - to_x) + side * half)))
     for i, j in itertools.combinations(range(len(radii)), 2):
         dx, dy = centres[j] - centres[i]
-        apart, towards = math.hypot(dx, dy), math.atan2(dy, dx)
-        for beside, turn in ((radii[j], 0.0), (-radii[j], math.pi)):
-            if apart > 0 and abs(radii[i] - beside) <= apart + TOLERANCE:
-                half = math.acos(np.clip((radii[i] - beside) / apart, -1, 1))
-                for angle in (towards - half, towards + half):
-                    yield (i, angle), (j, angle + turn)
+        distance, towards = math.hypot(dx, dy), math.atan2(dy, dx)
+        tangents = []
+        if distance > abs(radii[i] - radii[j]):
+            tangents.append((math.acos((radii[i] - radii[j]) / distance), 0.0))
+        if distance >= radii[i] + radii[j] - TOLERANCE:
+            cosine = min(1.0, (radii[i] + radii[j]) / distance)
+            tangents.append((math.acos(cosine), math.pi))
+        for (half, opposite), side in itertools.product(tangents, (-1, 1)):
+            angle = towards + side * half
+            pairs.append((add(i, angle), add(j, angle + opposite)))
+    x, y, circles, angles = np.array(nodes).T
+    return np.column_stack([x, y]), circles, angles % math.tau, np.array(pairs)
+
+
+def is_free(a, b, centres, radii, bounds):
+    left, right, bottom, top = np.array(bounds) + TOLERANCE * np.array([-1, 1, -1, 1])
+    x, y = np.sort([a, b], axis=0).T
+    if x[0] < left or x[1] > right or y[0] < bottom or y[1] > top:
+        return False
+    share = (centres - a) @ (b - a) / max((b - a) @ (b - a), 1e-300)
+    nearest = a + np.clip(share, 0, 1)[:, None] * (b - a)
+    return (np.hypot(*(nearest - centres).T) >= radii - TOLERANCE).all()
+
+
+def covered(k, centres, radii, bounds):
+    """Middles and half widths of the angles at which a circle lies in others or over the border."""
+    (x, y), radius, found = centres[k], radii[k], []
+    for other, ((to_x, to_y), size) in enumerate(zip(centres, radii)):
+        distance = math.hypot(to_x - x, to_y - y)
+        if other != k and distance < radius + size - TOLERANCE:
+            cosine = (distance**2 + radius**2 - size**2) / (2 * distance * radius)
+            found.append((math.atan2(to_y - y, to_x - x), math.acos(np.clip(cosine, -1, 1))))
+    left, right, bottom, top = bounds
+    for quarters, margin in enumerate((right - x, top - y, x - left, y - bottom)):
+        if margin < radius:
+            found.append((quarters * math.pi / 2, math.acos(max(margin / radius, -1))))
+    return np.array(found).reshape(-1, 2).T
 
 
 def of_all_tangents(problem):
-    """Length of the shortest path in the graph of all tangents and of the arcs between them; start
-    and target are circles without a radius.
-    """
-    home = problem.workspace
-    centres = np.concatenate([[problem.start, problem.target], home.centres])
-    radii = np.concatenate([[0.0, 0.0], home.radii])
-    low, high = np.reshape(home.bounds, (2, 2)).T
-
-    def place(circle, angle):
-        return centres[circle] + radii[circle, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
-
-    def is_free(points, distances):
-        within = (points >= low - TOLERANCE) & (points <= high + TOLERANCE)
-        return within.all(axis=(1, 2)) & (distances >= radii - TOLERANCE).all(axis=1)
-
-    tangents = np.array([((0, 0.0), (1, 0.0)), *list_tangents(centres, radii)])
-    lines = place(tangents[..., 0].astype(int).ravel(), tangents[..., 1].ravel()).reshape(-1, 2, 2)
-    apart = shapely.distance(shapely.linestrings(lines)[:, None], shapely.points(centres))
-    free = is_free(lines, apart)
-    circles, angles = tangents[free].reshape(-1, 2).T
-    edges = [(2 * k, 2 * k + 1, math.dist(*line)) for k, line in enumerate(lines[free])]
-    for k, radius in enumerate(radii):
-        nodes = np.flatnonzero(circles == k)
-        nodes = nodes[np.argsort(angles[nodes] % math.tau)]
-        sweep = np.diff(angles[nodes] % math.tau, append=angles[nodes[:1]] % math.tau + math.tau)
-        along = place(np.array([k]), angles[nodes, None] + sweep[:, None] * ALONG)
-        apart = np.linalg.norm(along[:, :, None] - centres, axis=-1).min(axis=1, initial=math.inf)
-        arcs = np.stack([nodes, np.roll(nodes, -1), radius * sweep], axis=1)
-        edges += arcs[is_free(along, apart)].tolist()
-    tails, heads, lengths = np.array(edges).reshape(-1, 3).T
-    size = (max(len(circles), 2),) * 2
-    graph = coo_array((np.maximum(lengths, 1e-300), (tails.astype(int), heads.astype(int))), size)
-    ends = [np.flatnonzero(circles == end)[:1] for end in (0, 1)]
-    if not all(map(len, ends)):
+    """Length of the shortest path in the graph of all tangents, each arc cut at all their ends."""
+    circles = problem.workspace
+    centres, radii = outer(circles)
+    points, on_circle, angles, pairs = nodes_of(problem, centres, radii)
+    edges = {}
+    for i, j in pairs.tolist():
+        if is_free(points[i], points[j], centres, radii, circles.bounds):
+            edges[i, j] = np.hypot(*(points[j] - points[i]))
+    for k in range(len(radii)):
+        nodes = np.flatnonzero(on_circle == k)
+        nodes = nodes[np.argsort(angles[nodes])]
+        begin = angles[nodes]
+        middle, half = covered(k, centres, radii, circles.bounds)
+        for i, j, at, sweep in zip(
+            nodes, np.roll(nodes, -1), begin, np.diff(begin, append=begin[0] + math.tau)
+        ):
+            after = np.add.outer([-math.tau, 0, math.tau], (middle - at) % math.tau)
+            overlap = np.minimum(sweep, after + half) - np.maximum(0, after - half)
+            if (overlap <= 1e-8).all() and radii[k] * sweep < edges.get((i, j), math.inf):
+                edges[i, j] = radii[k] * sweep
+    tail, head = np.array(list(edges)).reshape(-1, 2).T
+    length = np.maximum(list(edges.values()), 1e-300)
+    graph = coo_array((length, (tail, head)), shape=(len(points), len(points))).tocsr()
+    distance, before = dijkstra(graph, directed=False, indices=0, return_predecessors=True)
+    if math.isinf(distance[1]):
         return math.inf
-    return dijkstra(graph.tocsr(), directed=False, indices=ends[0].item())[ends[1].item()]
+    path = [1]
+    while path[-1] != 0:
+        path.append(before[path[-1]])
+    return math.fsum(
+        min(edges.get(pair, math.inf) for pair in (step, step[::-1]))
+        for step in itertools.pairwise(path)
+    )
 
 
 def assert_same(problem):
     found = shortest_path(problem)
-    assert found.length == pytest.approx(of_all_tangents(problem), rel=1e-13)
+    assert found.length == of_all_tangents(problem)
     if math.isfinite(found.length):
         assert_is_bound(found, problem)
     return found
