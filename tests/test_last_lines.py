@@ -16,7 +16,7 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
         "Time: 0:03:24",
     ]
     PAGE.parent.mkdir(parents=True)
-    PAGE.write_text('<p class="headline">Of 3 numbers 2 fit.</p>')
+    PAGE.write_text('<p class="headline">Of 3 numbers 2 fit the paper&#39;s.</p>')
     assert plugin.list_last_lines({ROUTE}, 9, 481.6)[-1] == "Time: 0:00:09, CPU: 482 s"
     page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
     made = {PAGE, *(ROUTE.with_name(name) for name in ("a.tex", "b.tex", "c.svg", "c.png"))}
@@ -25,7 +25,7 @@ def test_the_last_line_names_the_page(tmp_path, monkeypatch):
         "Results: results/full, results/full/song2016",
         "Time: 0:00:01",
         f"Figure: {ROUTE.with_name('c.svg')}",
-        "Of 3 numbers 2 fit.",
+        "Of 3 numbers 2 fit the paper's.",
         page,
     ]
 

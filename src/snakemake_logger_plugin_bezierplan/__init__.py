@@ -6,6 +6,7 @@ Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles
 one.
 """
 
+import html
 import re
 import time
 from datetime import timedelta
@@ -143,7 +144,7 @@ def list_last_lines(outputs: set[Path], seconds: float, *spent: float) -> list[s
     lines += [f"Figure: {figures[0]}"] if len(figures) == 1 else []
     for page in sorted(file for file in outputs if file.name == "index.html"):
         said = re.search(r'<p class="headline">(.*?)</p>', page.read_text(encoding="utf-8"))
-        lines += [said[1]] if said else []
+        lines += [html.unescape(said[1])] if said else []
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []
 
