@@ -147,7 +147,7 @@ def build_paper_page(
     heads |= {"where_it_holds": "where it holds, or why that is open"}
     shown = claims["primary"] & claims["main"].astype(bool)
     main = claims.loc[shown, [*heads, "reason"]].fillna("")
-    main = main.assign(where_it_holds=main.apply(explain_verdict, axis=1))[[*heads]]
+    main = main.assign(where_it_holds=main.apply(describe_where_or_why, axis=1))[[*heads]]
     parts = [
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
@@ -164,11 +164,11 @@ def build_paper_page(
     return "\n\n".join(parts) + "\n"
 
 
-def explain_verdict(claim: pd.Series) -> str:
+def describe_where_or_why(claim: pd.Series) -> str:
     """Return where a claim holds, or the first part of the reason if that is open.
 
     >>> told = {"verdict": "depends", "where_it_holds": "", "reason": "partly (O1: 2). It is so."}
-    >>> explain_verdict(pd.Series(told))
+    >>> describe_where_or_why(pd.Series(told))
     'partly'
     """
     if claim["verdict"] not in ("depends", "untestable"):

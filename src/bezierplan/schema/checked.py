@@ -122,15 +122,21 @@ def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None
         check_known(word, names, location)
 
 
-def describe_known(word: Any, names: Iterable[Any]) -> str:
-    """Return the end of a message about an unknown word: the closest known word, if one is close,
-    and the known words (of more than 40, the ten closest).
-    """
+def find_closest(word: Any, names: Iterable[Any]) -> str:
+    """Return the known word that an unknown one is likely to mean, empty if none is close."""
     words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)
     # A word of the same unit may be meant, such as cpu_s for wall_s.
     near = near or [each for each in words if str(word).endswith(f"_{each.rpartition('_')[2]}")]
-    hint = f"; did you mean {near[0]}?" if near else ";"
+    return near[0] if near else ""
+
+
+def describe_known(word: Any, names: Iterable[Any]) -> str:
+    """Return the end of a message about an unknown word: the closest known word, if one is close,
+    and the known words (of more than 40, the ten closest).
+    """
+    words, near = sorted({*map(str, names)}), find_closest(word, names)
+    hint = f"; did you mean {near}?" if near else ";"
     if len(words) > 40:
         listed = difflib.get_close_matches(str(word), words, n=10, cutoff=0.0)
         return f"{hint} known: {', '.join(sorted(listed))} and {len(words) - len(listed)} others"

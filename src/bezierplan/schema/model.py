@@ -6,7 +6,6 @@ a field is written once and serves three purposes: the message about a wrong val
 config/README.md, and the reader of the class.
 """
 
-import difflib
 import math
 import re
 import textwrap
@@ -29,7 +28,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.checked import Fault, describe_known
+from bezierplan.schema.checked import Fault, describe_known, find_closest
 
 
 class Model(BaseModel):
@@ -51,7 +50,7 @@ class Model(BaseModel):
             if key not in fields:
                 text = f"{key}: unknown key{describe_known(key, fields)}"
                 raise PydanticCustomError(
-                    "unknown_key", "{text}", {"text": text, "key": key, "keys": [*fields]}
+                    "unknown_key", "{text}", {"text": text, "key": key, "known": [*fields]}
                 )
         for key, field in fields.items():
             if field.is_required() and key not in content:
@@ -117,20 +116,12 @@ def parse_sound_part(
         try:
             return model.model_validate(content), [*lines], []
         except ValidationError as error:
-            faults = error.errors(include_url=False)
-            told = describe_fault(error, location).lines
-        unknown = [each for each in faults if each["type"] == "unknown_key"]
-        # Options that panels share are copied before they are checked, so their keys stay.
-        if not unknown or lines.keys() >= {*told}:
+            faults, told = error.errors(include_url=False), len(lines)
+            lines |= dict.fromkeys(describe_fault(error, location).lines)
+        # Options that panels share are copied before they are checked, so their unknown keys stay
+        # and are told again.
+        if len(lines) == told or not _take_out_unknown_keys(faults):
             break
-        lines |= dict.fromkeys(told)
-        for each in unknown:
-            key = each["ctx"]["key"]
-            value = each["input"].pop(key, None)
-            # A misspelt key that must be there would else be missing, too.
-            for meant in difflib.get_close_matches(str(key), each["ctx"]["keys"], n=1):
-                each["input"].setdefault(meant, value)
-    lines |= dict.fromkeys(told)
     places = {each["loc"][:2] for each in faults}
     # From the end, so that the numbers of entries in a list stay valid.
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
@@ -143,6 +134,21 @@ def parse_sound_part(
         )
     except ValidationError:
         raise Fault(*lines) from None
+
+
+def _take_out_unknown_keys(faults: list[Any]) -> bool:
+    """Take the unknown keys that faults are about out of their mappings, and return whether there
+    are any.
+
+    A value moves to the key that is likely meant, which else would be missing, too.
+    """
+    unknown = [each for each in faults if each["type"] == "unknown_key"]
+    for each in unknown:
+        key, mapping = each["ctx"]["key"], each["input"]
+        value = mapping.pop(key, None)
+        if meant := find_closest(key, each["ctx"]["known"]):
+            mapping.setdefault(meant, value)
+    return bool(unknown)
 
 
 def describe_fault(error: ValidationError, *location: str) -> Fault:

@@ -62,9 +62,7 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
 
 def build_matrix(lengths: np.ndarray, ends: np.ndarray, count: int) -> "csr_array":
-    """Return the lengths (e,) of edges by their ends (2, e), some of `count` nodes, as a sparse
-    matrix.
-    """
+    """Return the lengths (e,) of edges between nodes (2, e) as a sparse matrix (count, count)."""
     from scipy.sparse import coo_array
 
     ends = ends.astype(np.int32)  # older versions of scipy take no wider ones

@@ -132,7 +132,7 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
     keeps_best, budget = getattr(module, "keeps_best", True), settings.get("evaluations", math.inf)
     exact, names = getattr(module, "exact", False), {*TAKEN, *settings}
     plans_of: dict[str, list[Plan]] = {}
-    draws = False
+    draws, paths, free = False, 0, 0
     for name, problem in by_name.items():
         # A problem at a time, so that a slow planner's findings appear early.
         try:
@@ -143,11 +143,14 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
         plans = plans_of[name] = [each.result for each in made]
         draws |= any(each.drew for each in made)
         first = next(iter(plans_of.values()))[0]
+        feasible = _find_free(plans, problem)
+        paths += sum(plan.path is not None for plan in plans)
+        free += sum(feasible)
         facts = {
             "plan": partial(_check_plans, plans, problem, names, first, is_file(planner)),
             "history": partial(_check_history, plans, keeps_best),
             "budget": partial(_check_budget, plans, budget),
-            "claims": partial(_check_claims, plans, problem, exact),
+            "claims": partial(_check_claims, plans, feasible, problem, exact),
         }
         for fact, check in facts.items():
             try:
@@ -158,8 +161,6 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
         yield ContractFinding(name, "random numbers", not differs, differs)
     if not plans_of:
         return
-    paths = sum(plan.path is not None for plans in plans_of.values() for plan in plans)
-    free = sum(sum(_find_free(plans, by_name[name])) for name, plans in plans_of.items())
     if paths and not free:
         # Other units than the map's, or x and y interchanged, show in nothing else.
         lost = f"none of {paths} paths is free; expected points x, y in the map's units"
@@ -243,11 +244,10 @@ def _check_budget(plans: list[Plan], budget: float) -> str:
     return " to ".join(map(str, dict.fromkeys((used[0], used[-1])))) + " evaluations"
 
 
-def _check_claims(plans: list[Plan], problem: Problem, exact: bool) -> str:
+def _check_claims(plans: list[Plan], feasible: list[bool], problem: Problem, exact: bool) -> str:
     """Check that no path leads to a sealed target and that an exact planner claims no path wrongly;
     return the counts as text.
     """
-    feasible = _find_free(plans, problem)
     claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]
     detail = f"{len(claims)} paths claimed feasible, {sum(claims)} by the checker"
     if problem.name.endswith(SEALED) and any(feasible):
