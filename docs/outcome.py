@@ -46,14 +46,17 @@ RANGE = (
     "Our range: our program repeats the paper's whole experiment many times; 95 % of the results "
     "lie in it."
 )
-LAID = f"{comparison.SIGNS_MEAN}. Times are of another machine: not compared."
+LAID = (
+    f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
+    "so it does not count. Times are of another machine: not compared."
+)
 
 IDENTIFIED = (
-    "Some printed lengths equal, to the last digit, lengths of paths through centres of cells, or "
-    "sums of straight and diagonal moves. Each row gives the printed number, the length of the "
-    "closest such path, its cells or moves, and the share of nearby numbers that match by chance. "
-    "A row without a single number says how many of the numbers match. This shows how the paper's "
-    "numbers came about; our runs produced none of them."
+    "Some printed lengths equal lengths that can be calculated without any run: those of paths "
+    "through centres of cells (Song 2016, to the last digit), or sums of straight and diagonal "
+    "moves with the root of two rounded to 1.414 (Ma 2020, cut to three decimals). Each row gives "
+    "the printed number, the closest such length, its cells or moves, and the chance that a number "
+    "drawn nearby would match as well. A row for several numbers says how many of them match."
 )
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
@@ -89,13 +92,19 @@ def main() -> None:
     ).to_csv(KEPT / TEXTS, index=False)
     numbers, claims = (pd.read_csv(KEPT / name) for name in TABLES[:2])
     numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
+    labels = {key: study.labels for key, study in studies.items()}
+    of_problems = pd.read_csv(KEPT / "methods.csv")
     for key, answer in answers.items():
-        own = claims[claims["study"] == key]
-        page = build_paper_page(titles[key], answer, own, RESULTS / key, tables[key])
+        own_claims, own_numbers, own_problems = (
+            each[each["study"] == key] for each in (claims, numbers, of_problems)
+        )
+        measured = build_methods_table(own_problems, {key: labels[key]}, ["rounded"])
+        page = build_paper_page(
+            titles[key], answer, own_claims, measured, own_numbers, RESULTS / key, tables[key]
+        )
         (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
     (KEPT / "identified.md").write_text(build_identified_page(KEPT, studies), encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
-    labels = {key: study.labels for key, study in studies.items()}
     README.write_text(replace_block(readme, BLOCK, build_block(KEPT, labels)), encoding="utf-8")
     if faults := [f"{key}: {line}" for key, each in answers.items() for line in each.faults]:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
@@ -134,14 +143,16 @@ def build_paper_page(
     title: str,
     answer: facts.FilledText,
     claims: pd.DataFrame,
+    measured: str,
+    numbers: pd.DataFrame,
     folder: Path,
     tables: Mapping[str, tuple[str, int]],
 ) -> str:
-    """Return the page of a paper, as markdown: the answer, its main claims, and its tables with the
-    printed number beside ours in each cell.
+    """Return the page of a paper, as markdown: the answer, its main claims, its method beside the
+    rounded shortest path, and its tables with the printed number beside ours in each cell.
 
-    folder: the study's results. tables: name -> title, and how many columns name the rows, for
-    tables with printed numbers.
+    claims, numbers: of this paper. measured: the table of methods. folder: the study's results.
+    tables: name -> title, and how many columns name the rows, for tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds, or why that is open"}
@@ -153,15 +164,35 @@ def build_paper_page(
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         write_table(main.rename(columns=heads).set_index("claim")),
+        "## Its method beside the exact shortest path with rounded corners",
+        measured,
+        "## Its tables",
         MORE.format(folder.name),
         LAID,
     ]
     for name, (table_title, heads) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
-        numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
-        laid = _place_beside(ours, numbers.dropna(subset="table_row"), heads)
-        parts += [f"## {naming.format_heading(name)}: {table_title}", write_table(laid)]
+        laid = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
+        own = numbers[numbers["table"] == name]
+        # Both list the printed numbers in the same order.
+        laid = laid.dropna(subset="table_row").assign(counted=own["counted"].to_numpy())
+        parts += [
+            f"### {naming.format_heading(name)}: {table_title}",
+            *describe_worth(own[own["position"] != comparison.NO_RANGE]),
+            write_table(_place_beside(ours, laid, heads)),
+        ]
     return "\n\n".join(parts) + "\n"
+
+
+def describe_worth(numbers: pd.DataFrame) -> list[str]:
+    """Say which of a table's numbers prove nothing of the paper, and why; empty if there are none.
+
+    >>> describe_worth(pd.DataFrame({"reason": ["the map is ours", None, None]}))
+    ['Numbers that prove nothing of the paper: 1 of 3 (the map is ours).']
+    """
+    counts = numbers["reason"].value_counts()
+    of = [f"{count} of {len(numbers)} ({reason})" for reason, count in counts.items()]
+    return [f"Numbers that prove nothing of the paper: {', '.join(of)}."] if of else []
 
 
 def describe_where_or_why(claim: pd.Series) -> str:
@@ -172,7 +203,8 @@ def describe_where_or_why(claim: pd.Series) -> str:
     'partly'
     """
     if claim["verdict"] not in ("depends", "untestable"):
-        return claim["where_it_holds"]
+        nowhere = "nowhere" if claim["verdict"] in ("contradicted", "no effect") else ""
+        return claim["where_it_holds"] or nowhere
     # What a reading changes stands in brackets: the list of claims has it.
     without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", claim["reason"])
     return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
@@ -196,13 +228,32 @@ def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
         rows = pd.read_csv(folder / f"{key}_audit.csv", keep_default_na=False)
         if not rules or (rows := rows[rows["rule"].str.startswith(rules)]).empty:
             continue
+        # A row for several numbers names no metric, and says in words how many match.
+        of_one = rows["place"].str.contains("metric=")
         rows = rows.assign(
-            item=rows["item"].map(naming.format_heading), place=rows["place"].replace(study.labels)
+            printed=rows["printed"].where(of_one, ""),
+            limit=rows["limit"].where(of_one, ""),
+            item=rows["item"].map(naming.format_heading),
+            place=[name_place(place, study.labels) for place in rows["place"]],
         )
-        names = {"item": "in", "printed": "printed", "limit": "ours", "arithmetic": "paths"}
+        names = {"item": "in", "place": "number", "limit": "calculated", "arithmetic": "paths"}
         shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
         parts += [f"## {format_name(key)}", write_table(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
+
+
+def name_place(place: str, labels: naming.Labels) -> str:
+    """Name the place of a printed number by the labels of its problem, method and statistic.
+
+    >>> name_place("problem=0_15, method=smooth, metric=length", {"smooth": "smooth path"})
+    '0_15, smooth path'
+    """
+    values = dict(part.split("=", 1) for part in place.split(", "))
+    values.pop("metric", None)
+    return ", ".join(
+        " or ".join(labels.get(name, name) for name in value.split(" or "))
+        for value in values.values()
+    )
 
 
 def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
@@ -213,6 +264,8 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
         text = comparison.describe_range(number) or f"ours {values.iat[place]}"
+        if not number["counted"]:
+            text = text[text.index("ours") :]
         cells[place] = f"{number['as_printed']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     head = ", ".join(filter(str.strip, ours.columns[:heads])) or "row"
@@ -250,26 +303,33 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
     others = rows[rows["adds"] > 0]
     told = (
-        "A simpler planner, the exact shortest path with rounded corners, needs no search; in "
-        f"{len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios with "
-        "smooth paths, no method of a paper is smoother, or shorter at equal smoothness"
+        "A simpler planner, the exact shortest path with rounded corners, needs no random search. "
+        f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
+        "with smooth paths, the paper's method never beats it, by a smoother path or by a shorter "
+        "one as smooth"
     )
     beaten = " and ".join(f"{each.adds:.0f} of {each.both:.0f}" for each in others.itertuples())
-    return f"{told}; in the others, one is in {beaten} problems." if beaten else f"{told}."
+    return f"{told}; in the others, it does in {beaten} problems." if beaten else f"{told}."
 
 
-def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[str, str]]) -> str:
+def build_methods_table(
+    of_problems: pd.DataFrame,
+    labels: Mapping[str, Mapping[str, str]],
+    baselines: Iterable[str] = (),
+) -> str:
     """Return the table of the papers' methods, and the meaning of its columns.
 
-    labels: study -> name -> printed name.
+    labels: study -> name -> printed name. baselines: other methods that it shows as well.
     """
     rows = methods.group_by_family(of_problems)
     named = {
-        f"{study}/{name}": f"{format_name(study)}, {label}"
+        f"{study}/{name}": f"{format_name(study)}, {label}" if len(labels) > 1 else label
         for study, own in labels.items()
         for name, label in own.items()
     }
-    laid = methods.format_table(rows[rows["proposed"].astype(bool)], named)
+    rows = rows[rows["proposed"].astype(bool) | rows["method"].isin(baselines)]
+    groups = rows.groupby(["study", "family"], sort=False)
+    laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
     return f"{write_table(laid)}\n\n*{GENTLY}*"
 
 

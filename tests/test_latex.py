@@ -70,7 +70,8 @@ def test_printed_number_stands_above_ours_with_its_mark():
     text = latex.format_table(over, "", "", [SIGNS_MEAN])
     assert r"\begin{tabular}{lrr}" in text
     assert (
-        r"GA & \shortstack[r]{1.5 \\ $\circ$ ours 1.4 to 2} & \shortstack[r]{4 \\ 0.01} \\" in text
+        r"GA & \shortstack[r]{1.5 \\ ($\bullet$) ours 1.4 to 2} & \shortstack[r]{4 \\ 0.01} \\"
+        in text
     )
     assert (
         r"PRM & \shortstack[r]{3 \\ $\uparrow$ ours at most 2.2} & \shortstack[r]{- \\ 0.02} \\"

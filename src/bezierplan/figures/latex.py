@@ -17,11 +17,8 @@ _SIGNS = {
     "²": r"\textsuperscript{2}",
     "→": r"$\to$",
     "●": r"$\bullet$",
-    "○": r"$\circ$",
     "▲": r"$\uparrow$",
-    "△": r"$\triangle$",
     "▼": r"$\downarrow$",
-    "▽": r"$\bigtriangledown$",
     "ζ": r"$\zeta$",
 }
 _SIGNS |= {sign: f"\\{sign}" for sign in "&%$#_{}"}

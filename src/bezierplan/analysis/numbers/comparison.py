@@ -41,11 +41,11 @@ the table's file, counted from 0 below its head and right of the names of rows, 
 NO_RANGE = "no range"
 RANGE = ["low95_predicted", "high95_predicted", "position"]
 
-SIGNS = {"below": "▼▽", "inside": "●○", "above": "▲△"}
-"""Position -> its sign in print, and that beside a range that is too wide to tell."""
+SIGNS = {"below": "▼", "inside": "●", "above": "▲"}
+"""Position -> its sign in print, which stands in brackets if the range is too wide to tell."""
 SIGNS_MEAN = (
     "First the printed number, then the range of ours (95 % of experiments of the paper's size): "
-    "● inside, ▲ printed number above it, ▼ below it; a hollow sign tells little, because our "
+    "● inside, ▲ printed number above it, ▼ below it; a sign in brackets tells little, because our "
     "range also holds at least half of the paper's other numbers of the same kind"
 )
 
@@ -354,8 +354,8 @@ def describe_range(number: Mapping[str, Any]) -> str:
     """
     if number["position"] not in SIGNS:
         return ""
-    narrow, wide = SIGNS[number["position"]]
-    return f"{wide if str(number['wide']) == 'True' else narrow} ours {format_range(number)}"
+    sign = SIGNS[number["position"]]
+    return f"{f'({sign})' if str(number['wide']) == 'True' else sign} ours {format_range(number)}"
 
 
 def format_range(number: Mapping[str, Any]) -> str:
