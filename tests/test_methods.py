@@ -30,13 +30,14 @@ def test_the_largest_curvature_of_a_parabola_is_that_of_its_vertex():
 
 
 def test_an_arc_shorter_than_a_step_of_samples_counts():
-    path = bp.plan(BLOCKED, turning_radius=0.07).path
-    k = 4 / 3 * math.tan(math.pi / 8)
-    arc = 0.07 * np.array([[0.0, 0.0], [k, 0.0], [1.0, 1 - k], [1.0, 1.0]])
-    legs = [np.linspace((-50.0, 0.0), arc[0], 4)[:-1], arc, np.linspace(arc[3], (0.07, 50), 4)[1:]]
-    chain = Path("cubic_chain", np.concatenate(legs))
-    assert largest_curvature(chain) == pytest.approx(1 / 0.07, rel=0.02)
-    assert largest_curvature(path) > 0
+    # The shorter arc is 1e-5 of its legs.
+    for radius in (0.07, 5e-4):
+        k = 4 / 3 * math.tan(math.pi / 8)
+        arc = radius * np.array([[0.0, 0.0], [k, 0.0], [1.0, 1 - k], [1.0, 1.0]])
+        end = (radius, 50.0)
+        legs = [np.linspace((-50.0, 0.0), arc[0], 4)[:-1], arc, np.linspace(arc[3], end, 4)[1:]]
+        chain = Path("cubic_chain", np.concatenate(legs))
+        assert largest_curvature(chain) == pytest.approx(1 / radius, rel=0.02)
 
 
 def run(problem, method, path, length, feasible=True):

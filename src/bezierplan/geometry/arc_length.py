@@ -11,27 +11,24 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
 @allocation_free
-def _compute_speed(differences: np.ndarray, t: float) -> float:
-    """Return |B'(t)| of a piece by Horner's rule.
-
-    differences: (degree, 2), of its control points.
-    """
-    n = len(differences) - 1
+def evaluate(points: np.ndarray, t: float) -> tuple[float, float]:
+    """Return x and y of a Bézier piece (degree + 1, 2) at a parameter, by Horner's rule."""
+    n = len(points) - 1
     s = 1.0 - t
     first = s if n else 1.0
-    x, y = differences[0, 0] * first, differences[0, 1] * first
+    x, y = points[0, 0] * first, points[0, 1] * first
     factor = 1.0
     binomial = 1.0
     for i in range(1, n):
         factor *= t
         binomial *= (n - i + 1) / i
-        x = (x + factor * binomial * differences[i, 0]) * s
-        y = (y + factor * binomial * differences[i, 1]) * s
+        x = (x + factor * binomial * points[i, 0]) * s
+        y = (y + factor * binomial * points[i, 1]) * s
     if n:
         factor *= t
-        x += factor * differences[n, 0]
-        y += factor * differences[n, 1]
-    return (n + 1) * math.hypot(x, y)
+        x += factor * points[n, 0]
+        y += factor * points[n, 1]
+    return x, y
 
 
 @allocation_free
@@ -40,11 +37,12 @@ def _integrate_speed(
 ) -> float:
     """Integrate the speed between two parameters by Gauss-Legendre quadrature.
 
-    nodes, weights: (n,), on -1 to 1.
+    differences: (degree, 2), of control points. nodes, weights: (n,), on -1 to 1.
     """
     total = 0.0
     for node, weight in zip(nodes, weights):
-        total += weight * _compute_speed(differences, 0.5 * ((high - low) * node + high + low))
+        x, y = evaluate(differences, 0.5 * ((high - low) * node + high + low))
+        total += weight * (len(differences) * math.hypot(x, y))
     return 0.5 * (high - low) * total
 
 

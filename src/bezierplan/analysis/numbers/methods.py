@@ -9,9 +9,10 @@ import pandas as pd
 
 from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.analysis.columns import COLUMNS_OF
-from bezierplan.analysis.results import Results, build_path
+from bezierplan.analysis.results import Results
 from bezierplan.geometry.tightest_turn import largest_curvature
 from bezierplan.planners import rounded_shortest_path
+from bezierplan.running.answer import restore_path
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
@@ -21,6 +22,10 @@ BASELINE = "the exact shortest path with rounded corners"
 # The turns of at most so many paths are measured: more would take longer than to find the paths,
 # and move no median.
 _MEASURED = 100
+
+# What is read of runs: slices of frames of all columns take most of the time.
+_COLUMNS = ["problem", "method", "bound", "free", "gap", "corners", "cpu_s", "evaluations"]
+_COLUMNS += ["path_curve", "path_points"]
 
 # A shortest path that is longer than the straight line by less, as a share, is that line.
 _STRAIGHT = 1e-9
@@ -41,7 +46,7 @@ def _measure_methods(
         free=results.runs["feasible"].astype(bool),
         gap=metrics.compute_values(results.runs, "gap", problems),
         corners=metrics.compute_values(results.runs, "corners", problems),
-    )
+    )[_COLUMNS]
     for name, of_problem in runs.groupby("problem", sort=False):
         problem, bound = problems[name], of_problem["bound"].iloc[0]
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
@@ -77,9 +82,7 @@ def _measure_turns(smooth: pd.DataFrame, problem: Problem, bound: float) -> dict
     """
     if smooth.empty:
         return {}
-    # The columns alone that a path needs: rows of all columns take longer than the curvature.
-    measured = smooth[["path_curve", "path_points"]].head(_MEASURED)
-    paths = map(build_path, measured.to_dict("records"))
+    paths = map(restore_path, smooth["path_curve"], smooth["path_points"].head(_MEASURED))
     curvature = float(np.median([largest_curvature(path) for path in paths]))
     radius = 1 / curvature if curvature > 0 else math.inf
     draws = generator("methods/rounded")  # unused: the path is exact
