@@ -100,6 +100,9 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     """Return the pieces (pieces, degree + 1, points) of a clamped uniform B-spline."""
     pieces = points - degree
+    if pieces == 1:
+        # The blossoms give this too, but for 60 points in half a second.
+        return np.eye(points)[None]
     knots = np.concatenate(
         [np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))]
     )
