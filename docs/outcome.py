@@ -6,10 +6,12 @@ samples. Next to each verdict stands the verdict at the paper's own number of ru
 `make outcome` writes it; the site reads it.
 """
 
+import math
 import re
 import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import facts
 import numbers_picture
@@ -33,11 +35,12 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "Medians over the problems; methods with the fewest free paths come first. Lengths are those "
-    "of the curves, not numbers of cells. The rounded shortest path turns no tighter than the "
-    "median of the method's paths without corners. The method beats it if it is shorter, or turns "
-    "more gently than any rounded shortest path."
+    "Excess is how much longer a curve is than the exact shortest path; excess and time are "
+    "medians over the problems. The rounded shortest path turns no tighter than the median of the method's "
+    "paths without corners; a dash means that there are none. The method beats it in a problem if "
+    "its median path is shorter, or turns more gently than any rounded shortest path."
 )
+ALONE = "Its own row is of the turning radius that it takes if none is asked."
 OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
     "that the paper is wrong."
@@ -50,6 +53,8 @@ LAID = (
     f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
     "so it does not count. Times are of another machine: not compared."
 )
+MARKS = ("\\*", "†", "‡")
+"""Beside printed numbers that prove nothing of the paper, one for each reason."""
 
 IDENTIFIED = (
     "Some printed lengths equal lengths that can be calculated without any run: those of paths "
@@ -58,6 +63,7 @@ IDENTIFIED = (
     "the printed number, the closest such length, its cells or moves, and the chance that a number "
     "drawn nearby would match as well. A row for several numbers says how many of them match."
 )
+LISTED = "Some printed lengths are [lengths of paths that can be listed](identified.md)."
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
@@ -76,7 +82,7 @@ def main() -> None:
     )
     tables = {
         key: {
-            name: (study.tables[name].title, len(study.tables[name].index))
+            name: (study.tables[name].title, len(study.tables[name].index), bool(table.identify))
             for name, table in study.find_tables_of_runs().items()
             if table.published and table.printed
         }
@@ -98,7 +104,8 @@ def main() -> None:
         own_claims, own_numbers, own_problems = (
             each[each["study"] == key] for each in (claims, numbers, of_problems)
         )
-        measured = build_methods_table(own_problems, {key: labels[key]}, ["rounded"])
+        own_problems = own_problems[~own_problems["method"].isin(studies[key].variants())]
+        measured = build_methods_table(own_problems, {key: labels[key]})
         page = build_paper_page(
             titles[key], answer, own_claims, measured, own_numbers, RESULTS / key, tables[key]
         )
@@ -146,68 +153,82 @@ def build_paper_page(
     measured: str,
     numbers: pd.DataFrame,
     folder: Path,
-    tables: Mapping[str, tuple[str, int]],
+    tables: Mapping[str, tuple[str, int, bool]],
 ) -> str:
     """Return the page of a paper, as markdown: the answer, its main claims, its method beside the
     rounded shortest path, and its tables with the printed number beside ours in each cell.
 
     claims, numbers: of this paper. measured: the table of methods. folder: the study's results.
-    tables: name -> title, and how many columns name the rows, for tables with printed numbers.
+    tables: name -> title, how many columns name the rows, and whether some lengths can be listed;
+    for tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
-    heads |= {"where_it_holds": "where it holds, or why that is open"}
-    shown = claims["primary"] & claims["main"].astype(bool)
-    main = claims.loc[shown, [*heads, "reason"]].fillna("")
-    main = main.assign(where_it_holds=main.apply(describe_where_or_why, axis=1))[[*heads]]
+    heads |= {"where_it_holds": "where it holds, by which criterion of ours, or why that is open"}
+    main = claims[claims["primary"] & claims["main"].astype(bool)]
+    main = main.assign(where_it_holds=[*map(describe_where_or_why, main.to_dict("records"))])
+    main = main[[*heads]]
     parts = [
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         write_table(main.rename(columns=heads).set_index("claim")),
-        "## Its method beside the exact shortest path with rounded corners",
+        "## Its methods beside the exact shortest path with rounded corners",
         measured,
         "## Its tables",
         MORE.format(folder.name),
         LAID,
     ]
-    for name, (table_title, heads) in tables.items():
+    for name, (table_title, heads, is_listed) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         laid = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         own = numbers[numbers["table"] == name]
+        told, marks = mark_worthless(own[own["position"] != comparison.NO_RANGE])
         # Both list the printed numbers in the same order.
-        laid = laid.dropna(subset="table_row").assign(counted=own["counted"].to_numpy())
+        laid = laid.dropna(subset="table_row").assign(counted=own["counted"].to_numpy(), mark="")
+        laid.loc[laid["position"] != comparison.NO_RANGE, "mark"] = marks
         parts += [
             f"### {naming.format_heading(name)}: {table_title}",
-            *describe_worth(own[own["position"] != comparison.NO_RANGE]),
+            *told,
+            *([LISTED] if is_listed else []),
             write_table(_place_beside(ours, laid, heads)),
         ]
     return "\n\n".join(parts) + "\n"
 
 
-def describe_worth(numbers: pd.DataFrame) -> list[str]:
-    """Say which of a table's numbers prove nothing of the paper, and why; empty if there are none.
+def mark_worthless(numbers: pd.DataFrame) -> tuple[list[str], list[str]]:
+    """Mark the numbers of a table that prove nothing of the paper, and say why. If all have the
+    same reason, the text alone says so.
 
-    >>> describe_worth(pd.DataFrame({"reason": ["the map is ours", None, None]}))
-    ['Numbers that prove nothing of the paper: 1 of 3 (the map is ours).']
+    >>> mark_worthless(pd.DataFrame({"reason": ["the map is ours", None]}))
+    (['\\\\* proves nothing of the paper: the map is ours.'], ['\\\\*', ''])
     """
-    counts = numbers["reason"].value_counts()
-    of = [f"{count} of {len(numbers)} ({reason})" for reason, count in counts.items()]
-    return [f"Numbers that prove nothing of the paper: {', '.join(of)}."] if of else []
+    reasons = dict(zip(numbers["reason"].dropna().unique(), MARKS))
+    if len(numbers["reason"].unique()) == 1 == len(reasons):
+        (reason,) = reasons
+        return [f"These numbers prove nothing of the paper: {reason}."], [""] * len(numbers)
+    told = [f"{mark} proves nothing of the paper: {reason}." for reason, mark in reasons.items()]
+    return [" ".join(told)] if told else [], [*numbers["reason"].map(reasons).fillna("")]
 
 
-def describe_where_or_why(claim: pd.Series) -> str:
-    """Return where a claim holds, or the first part of the reason if that is open.
+def describe_where_or_why(claim: Mapping[str, Any]) -> str:
+    """Describe where a claim holds, and by which criterion of ours; or why that is open, by the
+    first part of the reason.
 
-    >>> told = {"verdict": "depends", "where_it_holds": "", "reason": "partly (O1: 2). It is so."}
-    >>> describe_where_or_why(pd.Series(told))
+    >>> told = {"verdict": "depends", "reason": "partly (O1: 2). It is so."}
+    >>> describe_where_or_why(told | {"where_it_holds": ""})
     'partly'
     """
-    if claim["verdict"] not in ("depends", "untestable"):
-        nowhere = "nowhere" if claim["verdict"] in ("contradicted", "no effect") else ""
-        return claim["where_it_holds"] or nowhere
-    # What a reading changes stands in brackets: the list of claims has it.
-    without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", claim["reason"])
-    return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
+    reason = claim["reason"] if isinstance(claim["reason"], str) else ""
+    if claim["verdict"] in ("depends", "untestable"):
+        # What a reading changes stands in brackets: the list of claims has it.
+        without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", reason)
+        return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
+    places = claim["where_it_holds"]
+    if not isinstance(places, str):
+        everywhere = "everywhere" if claim["verdict"] == "supported" else "nowhere"
+        places = f"{everywhere}: {claim['holds']}"
+    ours = re.search(r"Ours: (.*?)\.(?: |$)", reason)
+    return f"{places}; our criterion: {ours[1]}" if ours else places
 
 
 def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
@@ -266,7 +287,7 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
         text = comparison.describe_range(number) or f"ours {values.iat[place]}"
         if not number["counted"]:
             text = text[text.index("ours") :]
-        cells[place] = f"{number['as_printed']} {text}"
+        cells[place] = f"{number['as_printed']}{number['mark']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     head = ", ".join(filter(str.strip, ours.columns[:heads])) or "row"
     return pd.DataFrame(cells, pd.Index(names, name=head), ours.columns[heads:])
@@ -289,7 +310,7 @@ def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
         listed,
         PICTURE,
         f"*{said} {RANGE}*",
-        build_methods_table(of_problems, labels),
+        build_methods_table(of_problems[of_problems["proposed"]], labels),
     ]
     return "\n\n".join(parts)
 
@@ -302,8 +323,10 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     rows = methods.group_by_family(of_problems)
     rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
     others = rows[rows["adds"] > 0]
+    times = methods.group_by_family(of_problems[of_problems["method"] == "rounded"])["cpu_ms"]
     told = (
-        "A simpler planner, the exact shortest path with rounded corners, needs no random search. "
+        "A simpler planner, the exact shortest path with rounded corners, needs no random search "
+        f"and {times.min():.2g} to {times.max():.2g} ms. "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
         "with smooth paths, the paper's method never beats it, by a smoother path or by a shorter "
         "one as smooth"
@@ -312,14 +335,10 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     return f"{told}; in the others, it does in {beaten} problems." if beaten else f"{told}."
 
 
-def build_methods_table(
-    of_problems: pd.DataFrame,
-    labels: Mapping[str, Mapping[str, str]],
-    baselines: Iterable[str] = (),
-) -> str:
-    """Return the table of the papers' methods, and the meaning of its columns.
+def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:
+    """Return a table of methods, those of each family together, and the meaning of its columns.
 
-    labels: study -> name -> printed name. baselines: other methods that it shows as well.
+    labels: study -> name -> printed name; several studies are named.
     """
     rows = methods.group_by_family(of_problems)
     named = {
@@ -327,10 +346,12 @@ def build_methods_table(
         for study, own in labels.items()
         for name, label in own.items()
     }
-    rows = rows[rows["proposed"].astype(bool) | rows["method"].isin(baselines)]
+    # The rounded shortest path is not compared with itself.
+    rows.loc[rows["method"] == "rounded", ["rounded", "both"]] = math.nan, 0
     groups = rows.groupby(["study", "family"], sort=False)
     laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
-    return f"{write_table(laid)}\n\n*{GENTLY}*"
+    own = f" {ALONE}" if "rounded" in set(rows["method"]) else ""
+    return f"{write_table(laid)}\n\n*{GENTLY}{own}*"
 
 
 def format_name(key: str) -> str:

@@ -156,11 +156,11 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
                 + (f", worst {_format_share(row.worst)}" if row.worst < row.free else "")
                 for row in rows.itertuples()
             ],
-            "with corners": [
+            "free paths with corners": [
                 f"{row.cornered:.0f} of {row.round + row.cornered:.0f}" for row in rows.itertuples()
             ],
-            "longer than the shortest by": [*map(_format_share, rows["excess"])],
-            "rounded shortest path: longer by": [*map(_format_share, rows["rounded"])],
+            "excess": [*map(_format_share, rows["excess"])],
+            "excess of the rounded shortest path": [*map(_format_share, rows["rounded"])],
             "problems in which the method beats it": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
                 for row in rows.itertuples()

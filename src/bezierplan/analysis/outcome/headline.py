@@ -7,7 +7,6 @@ from collections import Counter
 import pandas as pd
 
 from bezierplan.analysis import legend, naming
-from bezierplan.analysis.numbers import comparison
 
 
 def describe_numbers(numbers: pd.DataFrame) -> str:
@@ -30,10 +29,14 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
             f" The other {vague} it cannot test: it also holds at least half of the paper's other "
             "numbers of the same kind."
         )
-    if ours := int((numbers["reason"] == comparison.NO_MAP).sum()):
+    reasons = told["reason"].fillna("")
+    worth = told[reasons == ""]
+    if len(worth) < len(told):
+        counts = reasons[reasons != ""].value_counts()
+        why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
-            f" {ours} of the {len(numbers)} are about maps that we made, because the paper prints "
-            "none: inside or outside, these prove nothing."
+            f" {len(told) - len(worth)} of the {len(told)} prove nothing of the paper ({why}); of "
+            f"the other {len(worth)}, {int((worth['position'] == 'inside').sum())} lie inside."
         )
     return text
 
