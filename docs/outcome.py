@@ -35,8 +35,8 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "Excess is how much longer a curve is than the exact shortest path; excess and time are "
-    "medians over the problems. The rounded shortest path turns no tighter than the median of the method's "
+    "Excess: how much longer a curve is than the exact shortest path. Excess and time are medians "
+    "over the problems. The rounded shortest path turns no tighter than the median of the method's "
     "paths without corners; a dash means that there are none. The method beats it in a problem if "
     "its median path is shorter, or turns more gently than any rounded shortest path."
 )
@@ -326,7 +326,7 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     times = methods.group_by_family(of_problems[of_problems["method"] == "rounded"])["cpu_ms"]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and {times.min():.2g} to {times.max():.2g} ms. "
+        f"and takes {times.min():.2g} to {times.max():.2g} ms. "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
         "with smooth paths, the paper's method never beats it, by a smoother path or by a shorter "
         "one as smooth"

@@ -52,6 +52,6 @@ def describe_claims(claims: pd.DataFrame) -> str:
     counts = Counter(legend.WORDS[verdict].group for verdict in claims["verdict"])
     return (
         f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "
-        f"hold in part, {counts['fail']} fail, and {counts['open']} are open: undecided, "
-        "untestable, or dependent on details that the papers leave open."
+        f"hold in part, {counts['fail']} fail, and {counts['open']} are open (undecided, "
+        "untestable, or dependent on unprinted details)."
     )
