@@ -199,14 +199,6 @@ def corners(path: Path) -> int:
     )
 
 
-def count_free_cells(path: Path, grid: Grid) -> int | None:
-    """Count the cells that a path touches; None if one of them is occupied."""
-    from bezierplan.geometry import cell_length
-
-    columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
-    return None if cell_length.count_occupied_cells(columns, rows, grid.occupied) else len(columns)
-
-
 @on_map(
     "-",
     "number of cells that the path touches; none for a path that touches an occupied cell",
@@ -216,8 +208,11 @@ def count_free_cells(path: Path, grid: Grid) -> int | None:
 )
 def cells(path: Path, grid: Grid) -> float:
     """Count the cells that a path touches; NaN for one that touches an occupied cell."""
-    free = count_free_cells(path, grid)
-    return np.nan if free is None else float(free)
+    from bezierplan.geometry import cell_length
+
+    columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
+    occupied = cell_length.count_occupied_cells(columns, rows, grid.occupied)
+    return np.nan if occupied else float(len(columns))
 
 
 @metric("-", "whether an obstacle is in the way, so that no straight line is free", step=1.0)

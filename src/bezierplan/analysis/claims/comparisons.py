@@ -3,7 +3,7 @@ the same cells.
 """
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
 import numpy as np
@@ -60,13 +60,13 @@ def _replace_rest(groups: list, rest: list) -> list:
     return list(itertools.chain.from_iterable(parts))
 
 
-def _list_displays(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
-    """List the tables and figure panels among a claim's artefacts that show runs of the check's
+def _list_displays(check: OfRuns, names: Iterable[str], material: Material) -> list[Display]:
+    """List the tables and figure panels of artefacts, given by name, that show runs of the check's
     experiments.
     """
     return [
         part
-        for name in claim.artefacts
+        for name in names
         for part in material.study.artefacts.get(name, [])
         if part.experiment in check.experiments
     ]
@@ -78,7 +78,7 @@ def _list_groups(check: OfRuns, claim: Claim, material: Material) -> list:
     """
     across = check.cells
     groups = []
-    for where in [part.where for part in _list_displays(check, claim, material)] or [{}]:
+    for where in [part.where for part in _list_displays(check, claim.artefacts, material)] or [{}]:
         if across in where:
             groups += convert_to_list(where[across])
         else:
@@ -191,7 +191,7 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
         runs, problems = material.results[name].runs, material.results[name].problems
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
-            for part in _list_displays(check, claim, material)[:1]:
+            for part in _list_displays(check, claim.artefacts, material)[:1]:
                 runs = select(runs, part.where)
         else:
             runs = select(runs, conditions)
@@ -299,13 +299,15 @@ def _list_published_tables(check: OfRuns, claim: Claim, material: Material) -> l
     """List the published numbers of each table of the check's experiments, the claim's artefacts
     first.
     """
-    tables: list[PrintedTable] = []
-    for name in dict.fromkeys([*claim.artefacts, *material.study.artefacts]):
-        for part in material.study.artefacts.get(name, []):
-            if part.published and part.experiment in check.experiments:
-                published = material.published[PurePath(part.published).stem]
-                numbers = comparison.assign_metrics(published, part.reads)
-                tables.append(
-                    select_metric(len(tables), part.experiment, numbers, check.printed_metric)
-                )
-    return tables
+    names = dict.fromkeys([*claim.artefacts, *material.study.artefacts])
+    return [
+        select_metric(
+            part.experiment,
+            comparison.assign_metrics(
+                material.published[PurePath(part.published).stem], part.reads
+            ),
+            check.printed_metric,
+        )
+        for part in _list_displays(check, names, material)
+        if part.published
+    ]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import (
+    cells,
     compute_heading_changes,
-    count_free_cells,
     extend_histories,
     sample_path,
 )
@@ -90,7 +90,7 @@ def straight_blocked(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     blocked = {}
     for name in runs["problem"].unique():
         line = Path("polyline", np.array([problems[name].start, problems[name].target]))
-        blocked[name] = count_free_cells(line, problems[name].workspace) is None
+        blocked[name] = np.isnan(cells(line, problems[name].workspace))
     return runs["problem"].map(blocked)
 
 
@@ -106,7 +106,7 @@ def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[
 
     count = getattr(cell_length, name)
     lengths = measure_on_maps(
-        lambda path, grid: np.nan if count_free_cells(path, grid) is None else count(path, grid),
+        lambda path, grid: np.nan if np.isnan(cells(path, grid)) else count(path, grid),
         runs,
         problems,
     )
