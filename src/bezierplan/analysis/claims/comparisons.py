@@ -14,7 +14,6 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Contrast
-from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import (
     PrintedTable,
@@ -128,7 +127,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
             name: _average_units(part, unit, column) for name, part in _split(rows, pool)
         }
         conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
-        compared = list(load_kind(check).cells(check, rows))
+        compared = list(check.list_cells(rows))
         printed_cells = {
             cell: [
                 find_cell(

@@ -46,11 +46,10 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics
-from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
+from bezierplan.analysis.claims import comparisons, sentences, verdicts
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding, MarkedComparison, Terms
-from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import (
     apply_variant,
@@ -188,16 +187,13 @@ def _judge_check(
     number: int, check: ClaimCheck, claim: Claim, name: str, material: Material
 ) -> list[MarkedComparison]:
     """Judge the comparisons of one check; return them with their findings. Raises Untestable."""
-    kind = load_kind(check)
     if not isinstance(check, OfRuns):
-        judged = [
-            (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
-        ]
+        judged = [(terms, None, finding) for terms, finding in check.judge(claim, material)]
     elif check.timed and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     else:
         judged = [
-            (each.terms, each, kind.find(check, each, f"{name}/{number}/{each.terms.name}"))
+            (each.terms, each, check.find(each, f"{name}/{number}/{each.terms.name}"))
             for each in comparisons.build_comparisons(check, claim, material)
         ]
     entries = [
@@ -276,13 +272,10 @@ def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     parts = entry.parts or (entry.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    printed = [effects.compute_effect(entry.check, part.printed, part.cells) for part in parts]
-    held = all(
-        bool(effects.is_as_claimed(entry.check, effect, entry.finding.margin)) for effect in printed
-    )
-    return float(
-        effects.compute_effect(entry.check, entry.comparison.printed, entry.comparison.cells)
-    ), held
+    printed = [entry.check.compute_effect(part.printed, part.cells) for part in parts]
+    held = all(bool(entry.check.is_as_claimed(effect, entry.finding.margin)) for effect in printed)
+    shown = entry.comparison
+    return float(entry.check.compute_effect(shown.printed, shown.cells)), held
 
 
 # Rows.
