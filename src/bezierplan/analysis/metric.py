@@ -191,5 +191,6 @@ def _measure(
     """
     from bezierplan.workspaces.problem import Path
 
-    path = Path(curve, np.frombuffer(points).reshape(-1, 2))
-    return measure(path, workspace) if curve else np.nan
+    if not curve:
+        return np.nan
+    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2)), workspace)

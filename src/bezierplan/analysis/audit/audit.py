@@ -103,22 +103,15 @@ def check_statistics(item: str, table: pd.DataFrame, picks: list[str]) -> Iterat
     """
     keys = list_key_columns(table)
     for rows in group_rows(table, [*keys, "metric"]):
-        where, metric = (
-            describe_cell(rows.iloc[0], [*keys, "metric"]),
-            METRICS[rows["metric"].iloc[0]],
-        )
+        where, name = describe_cell(rows.iloc[0], [*keys, "metric"]), rows["metric"].iloc[0]
+        metric, sizes = METRICS[name], rows["n"].dropna()
         texts = dict(zip(rows["statistic"], rows["as_printed"]))
-        sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(sizes.max()) if len(sizes) else 0
         # Otherwise only some of these runs count, and how many is not printed.
-        whole = (
-            not metric.feasible_only
-            and rows["metric"].iloc[0] not in picks
-            and sizes.nunique() == 1
-        )
-        for name, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
-            of_number = f"{where}, statistic={name}"
-            yield build_audit_row(item, of_number, rule, float(texts[name]), limit, fits, told)
+        whole = not metric.feasible_only and name not in picks and sizes.nunique() == 1
+        for statistic, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
+            place, printed = f"{where}, statistic={statistic}", float(texts[statistic])
+            yield build_audit_row(item, place, rule, printed, limit, fits, told)
 
 
 def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iterator[tuple]:

@@ -16,7 +16,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, is_repeated, select
-from bezierplan.analysis.table_kinds import Pivot, TableValue
+from bezierplan.analysis.table_kinds import Pivot
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
@@ -42,15 +42,15 @@ def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.
 
 
 class Cell(NamedTuple):
-    """One statistic of an entry of `values` over runs with equal keys.
+    """An entry of `values` over runs with equal keys.
 
-    draws: of random maps; 0 on others. share_feasible, bound, gap: of all
-    these runs, the bound (median) and gap (median of the feasible ones) of the metric's kind of
-    length. least, most: the range of the metric for one run (`least` of an entry is stronger than
-    that of its metric). value: the entry's number. size: how many runs satisfy the entry's
-    `where`, with or without a value; each once. numbers: sorted (n,): the metric of those that have
-    one. by_run: of all that satisfy it, NaN without a value, by problem and repeat. groups: the
-    numbers as one array for each value of the column `within`, None without that key.
+    draws: of random maps; 0 on others. share_feasible, bound, gap: of all these runs, the bound
+    (median) and gap (median of the feasible ones) of the metric's kind of length. least: the least
+    value that one run can have (`least` of an entry is stronger than that of its metric). size: how
+    many runs satisfy the entry's `where`, with or without a value; each once. numbers: sorted (n,):
+    the metric of those that have one. by_run: of all that satisfy it, NaN without a value, by
+    problem and repeat. groups: the numbers as one array for each value of the column `within`, None
+    without that key.
     """
 
     draws: int
@@ -58,11 +58,6 @@ class Cell(NamedTuple):
     bound: float
     gap: float
     least: float
-    most: float
-    value: int
-    metric: str
-    statistic: str
-    decimals: int
     size: int
     numbers: np.ndarray
     by_run: pd.Series
@@ -86,10 +81,11 @@ def compute_cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
     """Compute the numbers behind a table: one row for each entry of `values`, group of runs with
-    equal keys, and statistic; its columns are the keys and the fields of a `Cell`.
+    equal keys, and statistic.
 
-    beside: methods outside the table among those of its `where`, which metrics that compare methods
-    leave out.
+    Its columns are the keys, value (the number of the entry), metric, statistic, decimals, most
+    (the largest value that one run can have), and the fields of a `Cell`. beside: methods outside
+    the table among those of its `where`, which metrics that compare methods leave out.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
@@ -118,23 +114,20 @@ def compute_cells(
         bound, least = columns.to_numpy(dtype=float).T
         of_runs = _Measures(selects, selects & counts, values, bound, measure(metric.gap), least)
         for key, group in by_keys:
-            cell = _compute_cell(runs, group.index.to_numpy(), entry, of_runs, spec.within)
-            cell = cell._replace(value=number)
-            rows += [[*key, *cell._replace(statistic=name)] for name in entry.statistics]
+            cell = _compute_cell(runs, group.index.to_numpy(), of_runs, spec.within)
+            rows += [
+                [*key, number, entry.metric, name, entry.decimals, metric.most, *cell]
+                for name in entry.statistics
+            ]
+    columns = [*keys, "value", "metric", "statistic", "decimals", "most", *Cell._fields]
     # Decimals of type object stay integers next to published numbers without runs.
-    return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
+    return pd.DataFrame(rows, columns=columns).astype({"decimals": object})
 
 
 def _compute_cell(
-    runs: pd.DataFrame,
-    places: np.ndarray,
-    entry: TableValue,
-    measures: _Measures,
-    within: str | None,
+    runs: pd.DataFrame, places: np.ndarray, measures: _Measures, within: str | None
 ) -> Cell:
-    """Compute the cell of an entry from the runs at some places, without its place and
-    statistic.
-    """
+    """Compute the cell of an entry from the runs at some places."""
     of_entry, counted = (places[mask[places]] for mask in (measures.selects, measures.counts))
     # A run without a value counts nowhere.
     chosen = counted[~np.isnan(measures.values[counted])]
@@ -150,11 +143,6 @@ def _compute_cell(
         gap=_compute_median(measures.gap[places]),
         # Not `min`, which is nan as soon as one run has no least value.
         least=np.fmin.reduce(measures.least[places]),
-        most=metrics.METRICS[entry.metric].most,
-        value=0,
-        metric=entry.metric,
-        statistic="",
-        decimals=entry.decimals,
         size=len(counted),
         numbers=np.sort(numbers),
         # With problem and repeat, by which methods are drawn together (`order_and_level`).

@@ -5,8 +5,8 @@ Every file has `Options`, the keys that a check of this kind may have. A kind th
 
 - `compute_effect(points, cells)`: the effects (...) of point values (..., k) of the cells, whether
   they are ours, printed or drawn
-- `compute_gradient(ours, cells)`: how the effect changes with each value (k,), None without a linear
-  approximation; needed by kinds with a margin alone
+- `compute_gradient(ours, cells)`: how the effect changes with each value (k,), None without a
+  linear approximation; of kinds with a margin alone
 - `is_as_claimed(effects, margin)`: whether each effect (...) is what the claim says
 - `list_cells(rows)`: the cells of each comparison, with its `effects.Terms`, among the runs of one
   place

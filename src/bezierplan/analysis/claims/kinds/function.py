@@ -51,8 +51,9 @@ class Options(ClaimCheck):
     )
 
     def judge(self, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
-        """Call the study's function that a check names, and return its finding. Raises Untestable if
-        the experiment was not run, Fault if there is no function of that name.
+        """Call the study's function that a check names, and return its finding.
+
+        Raises Untestable if the experiment was not run, Fault if there is no function of that name.
         """
         for experiment in self.experiments:
             if experiment not in material.results:

@@ -127,7 +127,7 @@ class Options(Comparing):
         infinite = any(np.isinf(each).any() for each in comparison.strata.values())
         named = self.statistic
         # The tests below are for one condition, and for ranks, means or unshifted booleans.
-        if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
+        if others or named not in ("rank", "mean") or (comparison.boolean and least):
             p = effects.compute_p(side * draws - least)
         elif comparison.boolean:
             p = _compute_p_of_booleans(group, reference, comparison.paired)
