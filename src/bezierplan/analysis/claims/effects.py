@@ -11,7 +11,8 @@ resampling says nothing about events that never happened.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,7 +57,7 @@ class Terms(NamedTuple):
 
 
 class Contrast(NamedTuple):
-    """The values of the cells of one comparison.
+    """The values of the cells of one comparison; the terms alone if no runs are compared.
 
     terms: the words of the comparison. place: the values of `every` there, by column. cells:
     groups, or values of x in rising order (k).
@@ -69,16 +70,16 @@ class Contrast(NamedTuple):
     of the row. conditions: how many a cell pools.
     """
 
-    terms: Terms
-    place: tuple[tuple[str, Any], ...]
-    cells: tuple
-    strata: dict[str, np.ndarray]
-    printed: np.ndarray
-    paper_units: int | None
-    boolean: bool
-    paired: bool
+    terms: Terms = Terms()
+    place: tuple[tuple[str, Any], ...] = ()
+    cells: tuple = ()
+    strata: Mapping[str, np.ndarray] = MappingProxyType({})
+    printed: np.ndarray = np.full(1, np.nan)
+    paper_units: int | None = None
+    boolean: bool = False
+    paired: bool = False
     note: str = ""
-    conditions: int = 1
+    conditions: int | None = None
 
     @property
     def seed(self) -> str:
@@ -102,11 +103,9 @@ class Contrast(NamedTuple):
         """Return as text, such as `28 of 30, 30 of 30`, how many units of each cell have a value
         that can be averaged; fewer if runs failed.
         """
-        found = np.sum(
-            [np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0
-        )
+        found = zip(*(np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()))
         total = sum(map(len, self.strata.values()))
-        return ", ".join(f"{number} of {total}" for number in found)
+        return ", ".join(f"{sum(counts)} of {total}" for counts in found)
 
 
 class Finding(NamedTuple):
@@ -135,8 +134,7 @@ class Finding(NamedTuple):
 
 
 class MarkedComparison(NamedTuple):
-    """One comparison of terms; `comparison` is None if no runs are compared. primary:
-    False for a secondary check.
+    """One comparison with what was found. primary: False for a secondary check.
 
     parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
     """
@@ -144,23 +142,12 @@ class MarkedComparison(NamedTuple):
     number: int
     check: Any
     primary: bool
-    terms: Terms
-    comparison: Contrast | None
+    comparison: Contrast
     finding: Finding
     mark: str = "?"
     mark_family: str = ""
     p_family: float = math.nan
     parts: tuple[Contrast, ...] = ()
-
-    @property
-    def place(self) -> tuple[tuple[str, Any], ...]:
-        """Return the place of the comparison; empty if no runs are compared."""
-        return self.comparison.place if self.comparison else ()
-
-    @property
-    def counted(self) -> str:
-        """Return the text of `Contrast.counted`, empty if no runs are compared."""
-        return self.comparison.counted if self.comparison else ""
 
 
 def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:

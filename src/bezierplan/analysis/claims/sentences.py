@@ -16,7 +16,7 @@ from bezierplan.analysis.claims import variants
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
-from bezierplan.analysis.claims.kinds import equal_within, function, share, trend
+from bezierplan.analysis.claims.kinds import function, share, trend
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.naming import Labels, format_amount, format_number, name_column
 from bezierplan.schema.model import convert_to_list, is_number
@@ -79,15 +79,15 @@ def describe_place(values: Mapping[str, Any], labels: Labels) -> str:
     """Describe values by column as printed: a label, or the value after the name of its column."""
     words = []
     for column, value in values.items():
+        name, each_value = name_column(column, labels), convert_to_list(value)
         if value is True:
-            words.append(name_column(column, labels))
-            continue
-        if value is None:  # the default among variants: all rows
-            words.append(f"{name_column(column, labels)} or not")
-            continue
-        names = [labels.get(str(each), _format_value(each)) for each in convert_to_list(value)]
-        known = all(str(each) in labels for each in convert_to_list(value))
-        words.append(("" if known else f"{name_column(column, labels)} ") + " and ".join(names))
+            words.append(name)
+        elif value is None:  # the default among variants: all rows
+            words.append(f"{name} or not")
+        else:
+            known = all(str(each) in labels for each in each_value)
+            named = [labels.get(str(each), _format_value(each)) for each in each_value]
+            words.append(("" if known else f"{name} ") + " and ".join(named))
     return ", ".join(words)
 
 
@@ -155,13 +155,20 @@ def find_threshold(check: ClaimCheck) -> float:
 
 
 def _describe_claim(row: Row, check: ClaimCheck) -> str:
-    """Say the direction that a claim gives, and in how many comparisons taken together."""
-    together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
-    return f"the claim says {check.direction}{together}"
+    """Say the direction or the difference that a claim gives, and in how many comparisons taken
+    together.
+    """
+    if check.direction:
+        together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
+        return f"the claim says {check.direction}{together}"
+    if not check.target:
+        return "the claim says that they are alike"
+    amount = _format_amount(abs(check.target), row, check)
+    return f"the claim says by how much: {amount} {_name_side(check.target)}"
 
 
-def _describe_lower(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Describe a comparison of groups that should be lower, or higher, than others."""
+def _describe_groups(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe a comparison of groups that should differ, or be alike."""
     # Of an event, the share of runs in which it happens.
     quantity = _name_quantity(row)
     event = quantity.removeprefix("whether ")
@@ -186,21 +193,6 @@ def _describe_difference(row: Row, check: ClaimCheck) -> str:
 def _name_side(effect: float) -> str:
     """Name the side of an effect: lower or higher."""
     return "lower" if effect < 0 else "higher"
-
-
-def _describe_equal(row: Row, check: equal_within.Options, names: PrintedTerms) -> str:
-    """Describe a comparison of groups that should be alike, or apart by a stated amount."""
-    target = check.target
-    says = (
-        f"by how much: {_format_amount(abs(target), row, check)} {_name_side(target)}"
-        if target
-        else "that they are alike"
-    )
-    return (
-        f"in {_name_quantity(row)}, {names.group} is {_describe_difference(row, check)} "
-        f"{names.other}{_format_interval(row, check)}; the claim says {says}"
-        f"{_describe_margin(row, check)}"
-    )
 
 
 def _describe_trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
@@ -281,8 +273,8 @@ def _describe_effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
 
 
 _TEMPLATES = {
-    "lower": _describe_lower,
-    "equal_within": _describe_equal,
+    "lower": _describe_groups,
+    "equal_within": _describe_groups,
     "trend": _describe_trend,
     "share": _describe_share,
     "function": _describe_function,
@@ -382,11 +374,10 @@ def _list_factors(entry: MarkedComparison, deciding: Sequence[MarkedComparison])
     its mark.
     """
     factors: dict[str, Any] = {}
-    if entry.comparison is not None:
-        if entry.check.against and not entry.parts:
-            group, other = (_name_group(entry.check, cell) for cell in entry.comparison.cells)
-            factors |= {"against": other, "group": group}
-        factors |= dict(entry.place)
+    if entry.check.against and not entry.parts:
+        group, other = (_name_group(entry.check, cell) for cell in entry.comparison.cells)
+        factors |= {"against": other, "group": group}
+    factors |= dict(entry.comparison.place)
     if len({_describe_check(other.check) for other in deciding}) > 1:
         factors["what"] = _describe_check(entry.check)
     return Entry(factors, entry.mark_family)
@@ -446,7 +437,7 @@ def _build_key(entry: MarkedComparison) -> tuple:
     """Return what identifies a comparison: its place, and its terms or, if it combines several, how
     many.
     """
-    return entry.place, len(entry.parts) or entry.terms
+    return entry.comparison.place, len(entry.parts) or entry.comparison.terms
 
 
 def describe_split(comparisons: Sequence[Entry], labels: Labels) -> str:
