@@ -141,7 +141,7 @@ class Options(Comparing):
         # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
         if not (math.isfinite(ours) or infinite):
             p = math.nan
-        size_name, size = _compute_effect_size(self, comparison, side, ours)
+        size_name, size = _compute_effect_size(self, comparison, ours)
         reason = effects.explain_missing(p) or (
             "" if toward else effects.explain_no_difference(low, high, n)
         )
@@ -223,9 +223,7 @@ def _count_contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _compute_effect_size(
-    check: OfRuns, comparison: Contrast, side: int, ours: float
-) -> tuple[str, float]:
+def _compute_effect_size(check: OfRuns, comparison: Contrast, ours: float) -> tuple[str, float]:
     """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
     the claimed direction; or the difference itself.
     """
@@ -246,4 +244,4 @@ def _compute_effect_size(
         won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]
     else:
         won = [compute_a12(group, other) for group, other in pairs]
-    return "A12", float(np.mean(won)) if side > 0 else 1 - float(np.mean(won))
+    return "A12", float(np.mean(won)) if check.side > 0 else 1 - float(np.mean(won))
