@@ -152,7 +152,7 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
                 if (*pairs[0][::-1],) in pairs:  # either way round: the groups differ at all
                     pairs = [pair for pair in pairs if pair[0] < pair[1]] if truth else []
             case "trend":
-                x = sorted(values.get(check["x"], [])) if check["x"] in values else []
+                x = sorted(values.get(check["x"], []))
                 pairs = list(itertools.pairwise(x))
             case "equal_within":
                 target = check.get("target", 0)
@@ -166,12 +166,12 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
         edges[place] |= {(low, high) if upwards else (high, low) for low, high in pairs}
     found = {}
     for place in {*edges, *equal}:
-        ranks = dict.fromkeys([*itertools.chain.from_iterable(edges[place])], 0)
+        ranks = dict.fromkeys(itertools.chain.from_iterable(edges[place]), 0)
         for _ in range(len(ranks) + 1):
             changed = [(low, high) for low, high in edges[place] if ranks[high] <= ranks[low]]
             for low, high in changed:
                 ranks[high] = ranks[low] + 1
-        assert not changed if ranks else True, f"the checks on {place} contradict each other"
+        assert not changed, f"the checks on {place} contradict each other"
         found[place] = {value: (rank, None) for value, rank in ranks.items()}
         for group, (other, off, relative) in equal[place].items():
             found[place][group] = (found[place].get(other, (0, None))[0], (off, relative))
@@ -180,7 +180,6 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
 
 def happened(check, truth, n, rng) -> np.ndarray:
     """In which of n runs the event of a share happens."""
-    threshold = check["threshold"]
     if "pick" in check:
         return np.full(n, truth)
     share = {
@@ -188,8 +187,9 @@ def happened(check, truth, n, rng) -> np.ndarray:
         "as printed": (0.5, 1.0),
         "none": (0.5, 0.0),
         "some": (0.0, 0.5),
-    }.get(threshold)
-    share = share or ((0.0, 1.0) if check["direction"] == "at_least" else (1.0, 0.0))
+        "at_least": (0.0, 1.0),
+        "at_most": (1.0, 0.0),
+    }[check.get("direction", check["threshold"])]
     happens = np.zeros(n, dtype=bool)
     happens[: round(share[truth] * n)] = True
     return rng.permutation(happens)
@@ -206,15 +206,13 @@ def of_event(check, happens) -> np.ndarray:
         "above": (limit, limit + 1),
         "at_least": (limit - 1, limit),
     }
-    return np.where(happens, *reversed(other.get(word, (limit + 1, limit))))
+    return np.where(happens, *reversed(other[word]))
 
 
 def made(key, claim, truth) -> dict[str, Results]:
     """Results by experiment on which the claim's sentence is true, or its contrary."""
     checks = deciding(key, claim)
-    names = list(
-        dict.fromkeys(name for check in checks for name in convert_to_list(check["experiment"]))
-    )
+    names = dict.fromkeys(name for check in checks for name in convert_to_list(check["experiment"]))
     results = {}
     for name in names:
         own = [check for check in checks if name in convert_to_list(check["experiment"])]
@@ -240,21 +238,13 @@ def made(key, claim, truth) -> dict[str, Results]:
                 rows[check["metric"]] = of_event(check, happened(check, truth, len(rows), rng))
         above = levels(own, truth, columns)
         for metric in {place[0] for place in above}:
-            rank, most, factor, offset = (
-                np.zeros(len(rows)),
-                1,
-                np.ones(len(rows)),
-                np.zeros(len(rows)),
-            )
-            spread = np.zeros(len(rows))
-            for (_, spreads, column), ranks in (
-                (place, ranks) for place, ranks in above.items() if place[0] == metric
-            ):
-                known = (
-                    rows[column]
-                    .map(lambda value, ranks=ranks: ranks.get(value, (0, None))[0])
-                    .to_numpy(dtype=float)
-                )
+            rank, spread, offset = np.zeros((3, len(rows)))
+            factor, most = np.ones(len(rows)), 1
+            for (measured, spreads, column), ranks in above.items():
+                if measured != metric:
+                    continue
+                level = {value: known for value, (known, _) in ranks.items()}
+                known = rows[column].map(level).fillna(0).to_numpy()
                 most = max(most, known.max() + 1)
                 if spreads:
                     spread += known
@@ -455,17 +445,14 @@ def boxes(monkeypatch, truth):
 
 
 def outliers_of(maps):
-    frames = []
-    for variant, name in itertools.product(("cpso1", "cpso2"), tharwat2018.CHAOTIC):
-        objective = (
-            10.0 + 0.1 * (np.arange(200) % 7) + 50 * ((np.arange(200) % 10 == 0) & (name in maps))
-        )
-        frames.append(
-            pd.DataFrame(
-                {"repeat": range(200), "method": f"{variant}_{name}", "objective": objective}
-            )
-        )
-    return results_of(pd.concat(frames), "maps", workspace="equal", profile="default")
+    rows = pd.DataFrame(
+        itertools.product(("cpso1", "cpso2"), tharwat2018.CHAOTIC, range(200)),
+        columns=["variant", "map", "repeat"],
+    )
+    far = (rows["repeat"] % 10 == 0) & rows["map"].isin([*maps])
+    rows["method"] = rows["variant"] + "_" + rows["map"]
+    rows["objective"] = 10.0 + 0.1 * (rows["repeat"] % 7) + 50 * far
+    return results_of(rows, "maps", workspace="equal", profile="default")
 
 
 def sequences(monkeypatch, truth):
@@ -523,23 +510,13 @@ def clearances(monkeypatch, truth):
     """
     grid = from_lines(["....", "....", "####"], 1.0, "cell")
     problem = {"environment1": Problem("environment1", grid, (0.0, 0.0), (4.0, 0.0))}
-    rows = []
-    for method, repeat in itertools.product(
-        ("aco", "ga", "aco_ga", "asfa_ga", "bca", "bca_q"), range(80)
-    ):
-        height = 1 + (0.4 if (method == "bca_q") == truth else 0.1) + 0.0001 * repeat
-        points = [0.0, height, 4.0, height]
-        rows.append(
-            {
-                "method": method,
-                "repeat": repeat,
-                "path_points": points,
-                "path_curve": "polyline",
-                "length": 4.0 + 0.01 * repeat,
-            }
-        )
+    methods = ("aco", "ga", "aco_ga", "asfa_ga", "bca", "bca_q")
+    rows = pd.DataFrame(itertools.product(methods, range(80)), columns=["method", "repeat"])
+    apart = np.where((rows["method"] == "bca_q") == truth, 0.4, 0.1) + 0.0001 * rows["repeat"]
+    rows["path_points"] = [[0.0, 1 + each, 4.0, 1 + each] for each in apart]
+    rows = rows.assign(path_curve="polyline", length=4.0 + 0.01 * rows["repeat"])
     both = [
-        pd.DataFrame(rows).assign(workspace=name, condition=name, problem="environment1")
+        rows.assign(workspace=name, condition=name, problem="environment1")
         for name in ("environment1", "environment2")
     ]
     (found,) = results_of(pd.concat(both, ignore_index=True), "environments").values()
