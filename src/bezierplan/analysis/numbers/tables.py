@@ -5,10 +5,11 @@ Rows and columns are values of columns of the runs table, entries of `values`, a
 is needed to distinguish numbers but not named as index or column becomes a level of the columns.
 """
 
+import itertools
 import math
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -173,13 +174,11 @@ def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> p
 
 
 def lay_out(
-    places: pd.DataFrame, values: Sequence, rows: pd.Index, columns: pd.Index, empty: Any = ""
+    places: pd.DataFrame, texts: Sequence, rows: pd.Index, columns: pd.Index
 ) -> pd.DataFrame:
-    """Lay out values as a table with these heads, each at its place (`place_cells`)."""
-    table = np.full((len(rows), len(columns)), empty, dtype=object)
-    table[places["table_row"].to_numpy(dtype=int), places["table_column"].to_numpy(dtype=int)] = (
-        values
-    )
+    """Lay out texts as a table with these heads, each at its place (`place_cells`)."""
+    table = np.full((len(rows), len(columns)), "", dtype=object)
+    table[tuple(places[["table_row", "table_column"]].to_numpy(dtype=int).T)] = texts
     return pd.DataFrame(table, rows, columns)
 
 
@@ -225,39 +224,31 @@ def build_pivot(
     # A table of the paper's form has the paper's columns alone.
     if spec.printed:
         return wide
-    counted, asked = (
-        lay_out(table, numbers, index, columns, math.nan)
-        for numbers in (table["numbers"].map(len), table["size"])
-    )
+    counted = [f"{len(own)} of {size}" for own, size in zip(table["numbers"], table["size"])]
     stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
-    return _add_counts(wide, counted, asked, [": ".join(levels) for levels in stems])
+    return _add_counts(
+        wide, lay_out(table, counted, index, columns), [": ".join(levels) for levels in stems]
+    )
 
 
-def _add_counts(
-    wide: pd.DataFrame, counted: pd.DataFrame, whole: pd.DataFrame, stems: list[str]
-) -> pd.DataFrame:
+def _add_counts(wide: pd.DataFrame, counts: pd.DataFrame, stems: list[str]) -> pd.DataFrame:
     """Add a column such as `20 of 30` beside the values of which some runs have none, for example
     because they failed.
 
-    counted, whole: how many runs have a value, and of how many, at the places of the table. stems:
-    the name of each column without its statistic. Neighbouring columns with equal counts share one
-    column.
+    counts: how many runs have a value, and of how many, at the places of the table. stems: the name
+    of each column without its statistic. Neighbouring columns with equal counts share one column.
     """
-    columns, first = [], 0
-    for row in range(len(stems)):
-        columns.append(wide.iloc[:, row])
-        last = row + 1 == len(stems)
-        if not last and all(
-            table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, whole)
-        ):
-            continue
-        have, of = counted.iloc[:, row], whole.iloc[:, row]
-        if (have < of).any():
-            texts = [f"{n:.0f} of {total:.0f}" if total > 0 else "" for n, total in zip(have, of)]
-            of_what = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
-            name = ": ".join(filter(None, ["runs counted", of_what]))
-            columns.append(pd.Series(texts, wide.index, object, name))
-        first = row + 1
+    columns: list[pd.DataFrame | pd.Series] = []
+    for texts, alike in itertools.groupby(
+        range(len(stems)), lambda place: counts.iloc[:, place].to_list()
+    ):
+        places = [*alike]
+        columns.append(wide.iloc[:, places])
+        if any(len({*text.split(" of ")}) > 1 for text in texts):
+            ends = dict.fromkeys([stems[places[0]], stems[places[-1]]])
+            name = ": ".join(filter(None, ["runs counted", " to ".join(filter(None, ends))]))
+            shown = ["" if text == "0 of 0" else text for text in texts]
+            columns.append(pd.Series(shown, wide.index, object, name))
     return pd.concat(columns, axis=1) if columns else wide
 
 
