@@ -94,7 +94,7 @@ def pivot(ours: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
 
 
 def beside(ours: Results, spec: dict, printed: pd.DataFrame, **variants: str) -> pd.DataFrame:
-    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1")
+    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1", [], {})
 
 
 def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
@@ -402,16 +402,18 @@ def test_published_minimum_below_the_bound_is_impossible_and_lies_below():
 
 
 @pytest.mark.parametrize(
-    ("reason", "changed", "defined", "given"),
+    ("reason", "changed", "defined", "reconstructed", "fitted"),
     [
-        (comparison.UNDEFINED, {}, False, ()),
-        (comparison.NO_MAP, {}, True, (["long"],)),
-        ("", {}, True, (["brief"],)),
-        (comparison.ONE_DRAW, {"layout": 3}, True, ()),
-        (comparison.FITTED, {}, True, ((), {"length": {"method": ["plain"]}})),
+        (comparison.UNDEFINED, {}, False, [], {}),
+        (comparison.NO_MAP, {}, True, ["long"], {}),
+        ("", {}, True, ["brief"], {}),
+        (comparison.ONE_DRAW, {"layout": 3}, True, [], {}),
+        (comparison.FITTED, {}, True, [], {"length": {"method": ["plain"]}}),
     ],
 )
-def test_why_a_position_proves_nothing_stands_beside_it(reason, changed, defined, given):
+def test_why_a_position_proves_nothing_stands_beside_it(
+    reason, changed, defined, reconstructed, fitted
+):
     values = [entry | {"defined": defined} for entry in SPEC["values"]]
     ours = results()._replace(runs=results().runs.assign(**changed))
     for value in (10.0, 100.0):
@@ -423,7 +425,8 @@ def test_why_a_position_proves_nothing_stands_beside_it(reason, changed, defined
             {"faster": "fast"},
             [],
             "study/table1",
-            *given,
+            reconstructed,
+            fitted,
         )
         found = row(table, "long", "plain", "length")
         assert (found["reason"], found["position"]) == (reason, before["position"])

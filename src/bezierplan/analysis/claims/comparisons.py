@@ -97,17 +97,14 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     runs = _measure_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = check.cells, check.replicate
-    every, pool = check.every, check.pool
+    column, every, pool = check.cells, check.every, check.pool
     tables = _list_published_tables(check, claim, material)
     of_tables = [key for table in tables for key in table.keys if key in runs]
     keys = list(dict.fromkeys(["experiment", *list_unit_columns(check)[:-1], *of_tables]))
-    runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
+    runs = runs[list(dict.fromkeys([*keys, *_FACTORS, check.replicate, "value"]))]
     if factor := find_mixed_factor(check, runs):
         what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
-    # Published numbers are found by the places of the runs, each once.
-    places = dict(_split(runs[keys].drop_duplicates(), every))
     paired = check.paired
     # Equal units belong together if they share a start or a random workspace.
     if paired is None:
@@ -117,16 +114,16 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     metric_runs = material.results[check.experiments[0]].runs
     # Averaged over the runs of a unit, a boolean is a number like others.
     boolean = (
-        unit == "repeat"
+        check.replicate == "repeat"
         and check.metric in metric_runs
         and pd.api.types.is_bool_dtype(metric_runs[check.metric])
     )
     comparison_list = []
-    for condition, rows in _split(runs, every):
-        unit_tables = {
-            name: _average_units(part, unit, column) for name, part in _split(rows, pool)
-        }
-        conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
+    for _, rows in _split(runs, every):
+        unit_tables = {name: _average_units(check, part) for name, part in _split(rows, pool)}
+        # Published numbers are found by the places of the runs, each once.
+        places = _split(rows[keys].drop_duplicates(), pool)
+        conditions = [part.to_dict("records") for _, part in places]
         compared = list(check.list_cells(rows))
         printed_cells = {
             cell: [
@@ -163,7 +160,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=boolean,
                     paired=paired,
-                    note=_note_success_rates(check, rows, column, cells),
+                    note=_note_success_rates(check, rows, cells),
                     conditions=int(pooled),
                 )
             )
@@ -187,7 +184,7 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
     for name in check.experiments:
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
-        runs, problems = material.results[name].runs, material.results[name].problems
+        runs, problems, *_ = material.results[name]
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
             for part in _list_displays(check, claim.artefacts, material)[:1]:
@@ -212,8 +209,8 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
             for column in outcomes
             if column not in counting
         }
-        values = values.loc[select(counting.assign(**computed), outcomes).index]
-        values = values.reindex(runs.index)
+        chosen = select(counting.assign(**computed), outcomes)
+        values = values.loc[chosen.index].reindex(runs.index)
         # This includes runs that do not satisfy a condition on an outcome.
         if check.failures == "last":
             values = values.fillna(np.inf)
@@ -263,17 +260,17 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
         yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
 
 
-def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
+def _average_units(check: OfRuns, rows: pd.DataFrame) -> pd.DataFrame:
     """Average the values of each unit (row) in each cell (column); a run that counts as failed
     makes its unit fail.
     """
     # A check without groups has one cell, whose name is empty.
-    if column is None:
-        return rows.groupby(unit)["value"].mean().to_frame("")
-    return rows.groupby([unit, column])["value"].mean().unstack(column)
+    if check.cells is None:
+        return rows.groupby(check.replicate)["value"].mean().to_frame("")
+    return rows.groupby([check.replicate, check.cells])["value"].mean().unstack(check.cells)
 
 
-def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
+def _note_success_rates(check: OfRuns, rows: pd.DataFrame, cells: list) -> str:
     """Return a note if two groups are compared on their successful runs but differ in success rate
     (Fisher's exact test); otherwise an empty text.
     """
@@ -283,7 +280,7 @@ def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, c
         or not metrics.METRICS[check.metric].feasible_only
     ):
         return ""
-    values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
+    values = [rows.loc[rows[check.cells] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
     from scipy import stats
 

@@ -80,8 +80,8 @@ def compare(
     variant_of: dict[str, str],
     baselines: list[str],
     name: str,
-    reconstructed: Collection[str] = (),
-    fitted: dict[str, dict] | None = None,
+    reconstructed: Collection[str],
+    fitted: dict[str, dict],
 ) -> pd.DataFrame:
     """Compare the published numbers of a table with ours, in the order of the table; the columns
     are described above.
@@ -122,7 +122,7 @@ def compare(
     )
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
-    table["reason"] = find_reasons(both, spec, reconstructed, fitted or {})
+    table["reason"] = find_reasons(both, spec, reconstructed, fitted)
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
