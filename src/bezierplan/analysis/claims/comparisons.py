@@ -225,14 +225,11 @@ def _choose_failure_value(check: OfRuns) -> float:
     """Return the value of a run without one: NaN to drop it, infinite if it is worse than any
     other, or a value for which the event is false.
     """
-    match check.failures:
-        case "last":
-            return np.inf
-        case "count":
-            # Infinitely far on the side of the limit where the event is false.
-            above = check.limit is not None and check.limit[0] in ("above", "at_least")
-            return -np.inf if above else np.inf
-    return np.nan
+    if check.failures == "drop":
+        return np.nan
+    # Infinitely far on the side of the limit where the event is false.
+    above = check.limit is not None and check.limit[0] in ("above", "at_least")
+    return -np.inf if above and check.failures == "count" else np.inf
 
 
 def list_unit_columns(check: OfRuns) -> list[str]:

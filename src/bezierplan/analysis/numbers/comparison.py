@@ -99,13 +99,13 @@ def compare(
         beside = [name for name in variants + baselines if name not in methods]
         spec = spec.but(where=spec.where | {"method": methods + beside})
     ours = tables.compute_cells(results, spec, keys, beside)
-    ours = tables.place_cells(ours, spec, list(results.problems))
+    ours = tables.place_cells(ours, spec, results.problems)
     # Before the join, while all ranks of the printed table stand together.
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
     both = _join_published(ours, marked, key_columns, variant_of)
     # The outer join sorts rows by name; the table has an order of its own.
     order = (
-        tables.order_keys(both, spec, list(results.problems))
+        tables.order_keys(both, spec, results.problems)
         .sort_values([*keys, "value", "metric", "statistic"])
         .index
     )

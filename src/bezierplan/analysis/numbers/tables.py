@@ -7,7 +7,7 @@ is needed to distinguish numbers but not named as index or column becomes a leve
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
 
 
-def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+def order_keys(table: pd.DataFrame, spec: Pivot, problems: Iterable[str]) -> pd.DataFrame:
     """Make the key columns ordered categories, so that sorting follows the configuration.
 
     Values are ordered as listed in `where`, problems as in their experiment, all others sorted
@@ -160,7 +160,7 @@ def _compute_median(values: np.ndarray) -> float:
     return statistics.compute_statistic("median", values[~np.isnan(values)])
 
 
-def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Iterable[str]) -> pd.DataFrame:
     """Add to cells (`compute_cells`) their places in the table, from 0: table_row, table_column."""
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
     ordered = order_keys(groups, spec, problems)
@@ -193,9 +193,7 @@ def build_pivot(
     its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
     value, a column beside the values says how many have one (`_add_counts`).
     """
-    table = place_cells(
-        compute_cells(results, spec, spec.key_columns), spec, list(results.problems)
-    )
+    table = place_cells(compute_cells(results, spec, spec.key_columns), spec, results.problems)
     values = [
         statistics.compute_statistic(*each) for each in zip(table["statistic"], table["numbers"])
     ]

@@ -136,12 +136,12 @@ def _build_padded(grid: Grid) -> Region:
     needs=("safety_distance",),
     on=("grid",),
 )
-def keeps_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def keeps_distance(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Tell which paths (n,) keep their planner's safety distance from the obstacles; NaN where the
     planner has none.
     """
     kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
-    return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
+    return kept.astype(float).where(runs["safety_distance"].notna())
 
 
 @metric(
@@ -151,8 +151,8 @@ def keeps_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     needs=("safety_distance",),
     on=("grid",),
 )
-def length_at_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def length_at_distance(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return the lengths (n,) of paths that keep their planner's safety distance; NaN of all
     others.
     """
-    return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()
+    return runs["length"].where(keeps_distance(runs, problems) == 1)

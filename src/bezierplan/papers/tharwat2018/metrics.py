@@ -86,12 +86,12 @@ def best_corridor(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
 
 
 @metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
-def points_evaluated(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def points_evaluated(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Count the control points (n,) of all paths evaluated, each counted with as many as the run's
     path has; NaN where the run has no path.
     """
     points = runs["path_points"].map(len) / 2
-    return (runs["evaluations"] * points.where(points > 0)).to_numpy()
+    return runs["evaluations"] * points.where(points > 0)
 
 
 register(

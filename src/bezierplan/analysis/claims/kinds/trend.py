@@ -8,7 +8,7 @@ each condition, a bootstrap does.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -51,13 +51,13 @@ class Options(WithMargin):
         """Compute the change from the lowest x to the highest; if relative, as a share of the value
         at the lowest.
         """
-        change = points @ _compute_weights(np.array(cells, dtype=float))
+        change = points @ _compute_weights(cells)
         return change / points[..., 0] if self.relative else change
 
     def compute_gradient(self, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
         """Compute how the change depends on the value at each x (k,); None if relative to zero."""
         reference = ours[0] if self.relative else 1.0
-        return _compute_weights(np.array(cells, dtype=float)) / reference if reference else None
+        return _compute_weights(cells) / reference if reference else None
 
     def find(self, comparison: Contrast, name: str) -> Finding:
         """Test whether a metric changes with x as claimed. name: seeds the draws."""
@@ -96,11 +96,11 @@ class Options(WithMargin):
         return finding._replace(reason=reason)
 
 
-def _compute_weights(x: np.ndarray) -> np.ndarray:
-    """Compute the weights (k,) of values over x (k,) that give least-squares slope times range of
-    x; NaN for a single x.
+def _compute_weights(x: Sequence[float]) -> np.ndarray:
+    """Compute the weights (k,) of values over x (k) that give least-squares slope times range of x;
+    NaN for a single x.
     """
-    from_mean = x - x.mean()
+    from_mean = np.array(x, dtype=float) - np.mean(x)
     return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
