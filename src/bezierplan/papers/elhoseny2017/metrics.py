@@ -40,18 +40,16 @@ def _cut_into_equal_parts(path: Path) -> tuple[np.ndarray, float]:
     Returns the steps and the spacing, which is close to `BENDING_PART`.
     """
     from bezierplan.geometry import curves
+    from bezierplan.running.simulation.ways import build_way
 
     points = path.points
     if path.curve != "polyline":
-        count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
-        points = sample_path(path, count)
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        points = sample_path(path, BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1)
+    way = build_way(points)
     # Two parts at least, or there would be no change of heading.
-    parts = max(2, round(at[-1] / BENDING_PART))
-    wanted = np.linspace(0.0, at[-1], parts + 1)
-    return np.diff(
-        np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0
-    ), at[-1] / parts
+    parts = max(2, round(way.length / BENDING_PART))
+    places = way.place(np.linspace(0.0, way.length, parts + 1))
+    return np.diff(places, axis=0), way.length / parts
 
 
 @of_path(
