@@ -1,7 +1,7 @@
 """All studies together: every published number next to ours, and every claim."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pandas as pd
@@ -13,8 +13,8 @@ from bezierplan.analysis.numbers import comparison
 
 def gather(
     comparison_files: Mapping[tuple[str, str], str],
-    column_files: list[str],
-    claims_files: list[str],
+    column_files: Iterable[str],
+    claims_files: Iterable[str],
 ) -> dict[str, pd.DataFrame]:
     """Gather the tables of all studies by name: `numbers`, `claims`, and `order_and_level` of
     columns of numbers.
