@@ -178,7 +178,7 @@ class OfRuns(ClaimCheck):
         replicates.
         """
         named = {
-            key: convert_to_list(getattr(self, key, None) or [])
+            key: convert_to_list(getattr(self, key))
             for key in ("every", "pool", self.cells_key, "replicate")
             if key
         }

@@ -258,10 +258,8 @@ def _compute_adjusted_difference(
     group: np.ndarray, reference: np.ndarray, paired: bool
 ) -> tuple[float, float]:
     """Compute the difference of the shares of two boolean groups, and its variance, with two units
-    added to each; NaN for an empty group.
+    added to each.
     """
-    if not len(group) or not len(reference):
-        return math.nan, math.nan
     if paired:
         # Agresti and Min: one half for each of the four kinds of pair.
         n = len(group) + 2

@@ -47,7 +47,7 @@ class PrintedTerms(NamedTuple):
 
 def name_terms(row: Row, check: ClaimCheck | None, labels: Labels) -> PrintedTerms:
     """Name the groups and the place of a row of claim_checks.csv, None where it is empty."""
-    place = describe_place(json.loads(row["place"] or "{}"), labels)
+    place = describe_place(json.loads(row["place"]), labels)
     if not (check and check.against):
         return PrintedTerms("", "", place)
     groups = (str(_name_group(check, row[end])) for end in ("group", "other"))

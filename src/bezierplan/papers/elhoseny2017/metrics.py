@@ -79,17 +79,13 @@ def max_turn(path: Path) -> float:
     step=1.0,
     on=("grid",),
 )
-def straight_blocked(runs: pd.DataFrame, problems: Problems) -> pd.Series:
+def straight_blocked(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell for which runs (n,), on grids, the straight line from start to target touches an
     occupied cell.
     """
-    from bezierplan.workspaces.problem import Path
-
-    blocked = {}
-    for name in runs["problem"].unique():
-        line = Path("polyline", np.array([problems[name].start, problems[name].target]))
-        blocked[name] = np.isnan(cells(line, problems[name].workspace))
-    return runs["problem"].map(blocked)
+    lines = [problems[name].start + problems[name].target for name in runs["problem"]]
+    straight = runs.assign(path_curve="polyline", path_points=lines)
+    return np.isnan(measure_on_maps(cells, straight, problems))
 
 
 def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[float]:

@@ -71,18 +71,12 @@ def best_corridor(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which runs (n,) have a free path in the homotopy class of the exact shortest one; NaN
     without circles.
     """
-    best = {
-        problem: compute_homotopy_class(
-            np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace
-        )
-        for problem, own in runs.groupby("problem")
-    }
-    best = runs["problem"].map(best).to_numpy()
-    return np.where(
-        np.isnan(best),
-        np.nan,
-        runs["feasible"] & (measure_on_maps(homotopy, runs, problems) == best),
+    shortest = runs.assign(path_curve="polyline", path_points=runs["bound_path"])
+    best = measure_on_maps(
+        lambda path, workspace: compute_homotopy_class(path.points, workspace), shortest, problems
     )
+    found = np.equal(measure_on_maps(homotopy, runs, problems), best)
+    return np.where(np.isnan(best), np.nan, runs["feasible"] & found)
 
 
 @metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
