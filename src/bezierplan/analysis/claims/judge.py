@@ -146,7 +146,7 @@ def _describe_verdict(
         sentences.note_negligible(deciding, verdict, _find_unit(deciding[0].check, material)),
         _write_reason(decisive),
         sentences.note_disagreement(judgements),
-        claim.note or "",
+        claim.note,
     ]
     return finding._asdict() | {
         "verdict": verdict,
@@ -273,7 +273,7 @@ def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     if any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
     printed = [entry.check.compute_effect(part.printed, part.cells) for part in parts]
-    held = all(bool(entry.check.is_as_claimed(effect, entry.finding.margin)) for effect in printed)
+    held = all(entry.check.is_as_claimed(effect, entry.finding.margin) for effect in printed)
     shown = entry.comparison
     return float(entry.check.compute_effect(shown.printed, shown.cells)), held
 

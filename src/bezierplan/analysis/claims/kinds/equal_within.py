@@ -57,7 +57,7 @@ class Options(Comparing):
         if finding.mark:
             return finding
         ours, margin = finding.effect, finding.margin
-        toward = 1 if bool(self.is_as_claimed(ours, margin)) else -1
+        toward = 1 if self.is_as_claimed(ours, margin) else -1
         beyond = draws - self.target
         if math.isnan(finding.low95):
             p = math.nan

@@ -115,5 +115,5 @@ def _compute_slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
         there = np.isfinite(values)
         rises = values[there] - values[there][0]
         slopes.append((_compute_weights(x[there]) * rises).sum() / np.ptp(x[there]))
-    steepest = np.abs(slopes).max(initial=0.0)
-    return np.round(slopes / steepest, _DIGITS) * steepest if steepest > 0 else np.array(slopes)
+    steepest = np.abs(slopes).max(initial=0.0) or 1.0
+    return np.round(np.divide(slopes, steepest), _DIGITS) * steepest
