@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.analysis.claims import variants
-from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
+from bezierplan.analysis.claims.check import ClaimCheck, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
 from bezierplan.analysis.claims.kinds import function, share, trend
@@ -102,13 +102,13 @@ def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: 
     row: from claim_checks.csv, None where it is empty. labels: name -> how it is printed.
     own_criterion: whether the limit is ours because the paper gives no number.
     """
-    template = _TEMPLATES.get(row["test"], _describe_effect)
+    template = _TEMPLATES[row["test"]]
     # The other templates print the effect.
     if row["effect"] is None and template is not _describe_function:
-        template = _describe_effect
+        template = _describe_counts
     notes = [
         "judged on counted work, because seconds differ from machine to machine"
-        if isinstance(check, OfRuns) and check.work
+        if check.work
         else "",
         "the paper gives no number, so this limit is ours" if own_criterion else "",
     ]
@@ -218,15 +218,9 @@ def _describe_share(row: Row, check: share.Options, names: PrintedTerms) -> str:
         )
     needed = _NEEDS.get(check.threshold)
     needed = needed or f"in {_format_value(check.direction)} {100 * check.threshold:g} %"
-    low, high = row["low95"], row["high95"]
-    between = (
-        ""
-        if low is None or high is None
-        else f" (95 % interval {100 * low:.3g} to {100 * high:.3g} %)"
-    )
     units = "runs" if check.replicate == "repeat" else f"means by {check.replicate}"
-    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}{between}"
-    return f"{found}; the claim needs it {needed}"
+    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}"
+    return f"{found}{_format_interval(row, check)}; the claim needs it {needed}"
 
 
 def _describe_event(row: Row, check: share.Options) -> str:
@@ -253,19 +247,11 @@ def _describe_function(row: Row, check: function.Options, names: PrintedTerms) -
     )
 
 
-def _describe_effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Describe any other comparison; without an effect, say how many runs of each group have a
-    value.
-    """
-    if row["effect"] is not None:
-        compared = " ".join(filter(None, [names.group, row["relation"], names.other]))
-        quantity = ", ".join(filter(None, [_name_quantity(row), compared]))
-        return (
-            f"{quantity}: {_format_amount(row['effect'], row, check)}{_format_interval(row, check)}"
-        )
-    counts = (row["counted"] or "").split(", ")
+def _describe_counts(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe a comparison without an effect: how many runs of each group have a value."""
+    counts = row["counted"].split(", ")
     groups = [f" of {group}" for group in (names.group, names.other) if group] or [""]
-    if not row["counted"] or len(counts) != len(groups):
+    if len(counts) != len(groups):
         return f"{_name_quantity(row)} has no value"
     have = " and ".join(f"in {count} runs{group}" for count, group in zip(counts, groups))
     claimed = f"; {_describe_claim(row, check)}" if check.against and check.direction else ""
@@ -295,7 +281,7 @@ def describe_metric(metric: str) -> str:
 
 def _format_unit(row: Row) -> str:
     """Format the unit of a row to follow a number; empty if it has none."""
-    return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
+    return "" if row["unit"] in (None, "-") else f" {row['unit']}"
 
 
 def _format_amount(value: float, row: Row, check: ClaimCheck) -> str:
@@ -312,7 +298,7 @@ def _format_interval(row: Row, check: ClaimCheck) -> str:
         return ""
     if check.relative and row["effect"] > _TIMES and check.against:
         ends, unit = [1 + end for end in ends], " times"
-    elif check.relative:
+    elif check.relative or isinstance(check, share.Options):
         ends, unit = [100 * end for end in ends], " %"
     return f" (95 % interval {' to '.join(map(format_number, ends))}{unit})"
 
@@ -321,7 +307,7 @@ def _describe_margin(row: Row, check: ClaimCheck) -> str:
     """Describe the limit within which a difference does not count, and who chose it."""
     if row["margin"] is None:
         return ""
-    printed = isinstance(check, OfRuns) and isinstance(check.margin, PublishedMargin)
+    printed = isinstance(check.margin, PublishedMargin)
     origin = "our choice, and not more than the printed difference" if printed else "our choice"
     return (
         f"; differences below {_format_amount(row['margin'], row, check)} do not count ({origin})"
@@ -362,7 +348,7 @@ def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: st
 
 class Entry(NamedTuple):
     """A comparison for its description in words: the values of its factors (`against`, `group`,
-    `in`, columns), and its mark.
+    `what`, columns), and its mark.
     """
 
     factors: Mapping[str, Any]
@@ -514,5 +500,5 @@ def _name_value(value: Any, labels: Labels) -> str:
 def _choose_preposition(factor: str) -> str:
     """Choose the word before the values of a factor."""
     words = {"against": "against", "group": "for", "method": "for"}
-    places = ("what", "workspace", "problem", "experiment", "in")
+    places = ("what", "workspace", "problem", "experiment")
     return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

@@ -56,7 +56,7 @@ def list_numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFra
 
 
 def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Return which rows (n,) count in the denominator.
+    """Return which rows (n,), numbered from 0, count in the denominator.
 
     They are primary and have a range. Left out are numbers that are impossible on any map,
     repetitions of a number in another table, and the last of several counts that add up to the
@@ -78,11 +78,11 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
                 pd.isna(one) or pd.isna(other) or one == other
                 for one, other in zip(earlier[keys], row[keys])
             ):
-                counted[numbers.index.get_loc(index)] = False
+                counted[index] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
     for _, rows in counts.groupby(place, dropna=False, sort=False):
         # The last of them follows from the others.
         if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
-            counted[numbers.index.get_loc(rows.index[-1])] = False
+            counted[rows.index[-1]] = False
     return counted
