@@ -13,14 +13,12 @@ from functools import cache
 import numpy as np
 import pandas as pd
 import pytest
-from checks_of_claims import check_of
 from studies import KEYS, published, study
 
 from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import list_kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.results import Results
 from bezierplan.papers.tharwat2018 import functions as tharwat2018
@@ -53,85 +51,67 @@ def for_claims(key):
     return jobs.build_claims(study(key), "full").study
 
 
-def artefacts(key):
-    return for_claims(key).artefacts
-
-
-@cache
-def claims_of(key) -> list[dict]:
-    return [claim.plain() for claim in study(key).claims]
-
-
-def deciding(key, claim) -> list[dict]:
+def deciding(key, claim) -> list[OfRuns]:
     """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work
     that counts.
     """
     material = Material(for_claims(key)._replace(variant_of={}), {}, published(key), {})
-    sentence = Claim.model_validate(claim)
-    first, *_ = variants.list_variants(sentence)
-    checks = [comparisons.fill_rest(check, sentence, material) for check in sentence.checks]
+    first, *_ = variants.list_variants(claim)
+    checks = [comparisons.fill_rest(check, claim, material) for check in claim.checks]
     return [
-        variants.split_work(check)[0].plain()
+        variants.split_work(check)[0]
         for check in variants.apply_variant(checks, first, first)
         if check.primary
     ]
 
 
 def is_generated(claim) -> bool:
-    return all(
-        issubclass(list_kinds()[check["test"]], OfRuns)
-        for check in claim["checks"]
-        if "secondary" not in check
-    )
+    return all(isinstance(check, OfRuns) for check in claim.checks if check.primary)
 
 
 def is_untestable(claim) -> bool:
-    return any(check["test"] == "untestable" for check in claim["checks"])
+    return any(check.test == "untestable" for check in claim.checks)
 
 
-UNTESTABLE = [
-    (key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_untestable(claim)
-]
-CASES = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if not is_untestable(claim)]
-GENERATED = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_generated(claim)]
+def list_claims(fits) -> list[tuple[str, str]]:
+    return [(key, claim.id) for key in KEYS for claim in study(key).claims if fits(claim)]
 
 
-def claim_of(key, identity):
-    return next(claim for claim in claims_of(key) if claim["id"] == identity)
+UNTESTABLE, GENERATED = list_claims(is_untestable), list_claims(is_generated)
+CASES = list_claims(lambda claim: not is_untestable(claim))
+
+
+def claim_of(key, identity) -> Claim:
+    return next(claim for claim in study(key).claims if claim.id == identity)
 
 
 # Runs that make a claim true, or its contrary.
 
 
 def column_of(check) -> str:
-    return check["x"] if check["test"] == "trend" else check.get("across", "method")
-
-
-def groups_of(check) -> list:
-    pairs = [*check.get("pairs", []), *check.get("order", [])]
-    return [*check.get("groups", []), *check.get("than", []), *itertools.chain.from_iterable(pairs)]
+    return check.cells or "method"
 
 
 def factors(key, claim, checks, experiment) -> dict[str, list]:
     """Columns of the runs of an experiment, and the values that the claim's checks ask for."""
     found: dict[str, list] = defaultdict(list)
-    own = [check for check in checks if experiment in convert_to_list(check["experiment"])]
+    own = [check for check in checks if experiment in check.experiments]
     for check in own:
-        for column, wanted in check.get("where", {}).items():
+        for column, wanted in check.where.items():
             if column not in metrics.METRICS:
                 found[column] += convert_to_list(wanted)
-        found[column_of(check)] += groups_of(check)
-    if any(check["metric"] == "rank" for check in own):
-        part = artefacts(key)[convert_to_list(claim["artefact"])[0]][0]
+        found[column_of(check)] += check.groups_named
+    if any(check.metric == "rank" for check in own):
+        part = for_claims(key).artefacts[claim.artefacts[0]][0]
         for column, wanted in part.where.items():
             found[column] += convert_to_list(wanted)
     for check in own:
-        for column in [*check.get("every", []), *check.get("pool", [])]:
+        for column in [*check.every, *check.pool]:
             if not found[column]:
                 found[column] = list(range(LAYOUTS)) if column == "layout" else [1, 2]
-        if check["test"] == "trend" and len(set(found[check["x"]])) < 3:
-            found[check["x"]] += [10, 20, 30, 40, 50]
-    if any(check.get("replicate") == "layout" for check in own):
+        if check.test == "trend" and len(set(found[check.x])) < 3:
+            found[check.x] += [10, 20, 30, 40, 50]
+    if any(check.replicate == "layout" for check in own):
         found["layout"] = list(range(UNITS))
     found.pop("experiment", None)
     if not found["method"]:
@@ -145,24 +125,22 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
     """
     edges, equal = defaultdict(set), defaultdict(dict)
     for check in checks:
-        place = (check["metric"], check.get("statistic") in SPREADS, column_of(check))
-        match check["test"]:
+        place = (check.metric, check.statistic in SPREADS, column_of(check))
+        match check.test:
             case "lower":
-                pairs = [tuple(pair) for pair in check_of(check).compared]
+                pairs = [tuple(pair) for pair in check.compared]
                 if (*pairs[0][::-1],) in pairs:  # either way round: the groups differ at all
                     pairs = [pair for pair in pairs if pair[0] < pair[1]] if truth else []
             case "trend":
-                x = sorted(values.get(check["x"], []))
-                pairs = list(itertools.pairwise(x))
+                pairs = list(itertools.pairwise(sorted(values.get(check.x, []))))
             case "equal_within":
-                target = check.get("target", 0)
-                off = target if truth else target + 10 * check["margin"]
-                for group, other in itertools.product(check["groups"], check["than"]):
-                    equal[place][group] = (other, off, check.get("scale") == "relative")
+                off = check.target if truth else check.target + 10 * check.margin
+                for group, other in itertools.product(check.groups, check.than):
+                    equal[place][group] = (other, off, check.relative)
                 continue
             case _:
                 continue
-        upwards = (check.get("direction") in (None, "lower", "up")) == truth
+        upwards = (check.direction in (None, "lower", "up")) == truth
         edges[place] |= {(low, high) if upwards else (high, low) for low, high in pairs}
     found = {}
     for place in {*edges, *equal}:
@@ -180,7 +158,7 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
 
 def happened(check, truth, n, rng) -> np.ndarray:
     """In which of n runs the event of a share happens."""
-    if "pick" in check:
+    if check.pick:
         return np.full(n, truth)
     share = {
         "all": (0.5, 1.0),
@@ -189,7 +167,7 @@ def happened(check, truth, n, rng) -> np.ndarray:
         "some": (0.0, 0.5),
         "at_least": (0.0, 1.0),
         "at_most": (1.0, 0.0),
-    }[check.get("direction", check["threshold"])]
+    }[check.direction or check.threshold]
     happens = np.zeros(n, dtype=bool)
     happens[: round(share[truth] * n)] = True
     return rng.permutation(happens)
@@ -197,9 +175,9 @@ def happened(check, truth, n, rng) -> np.ndarray:
 
 def of_event(check, happens) -> np.ndarray:
     """Values of a metric for which the event of a share happened, or not."""
-    if "event" not in check:
+    if not check.limit:
         return happens
-    ((word, limit),) = check["event"].items()
+    word, limit = check.limit
     other = {
         "below": (limit, limit - 1),
         "at_most": (limit + 1, limit),
@@ -212,10 +190,10 @@ def of_event(check, happens) -> np.ndarray:
 def made(key, claim, truth) -> dict[str, Results]:
     """Results by experiment on which the claim's sentence is true, or its contrary."""
     checks = deciding(key, claim)
-    names = dict.fromkeys(name for check in checks for name in convert_to_list(check["experiment"]))
+    names = dict.fromkeys(name for check in checks for name in check.experiments)
     results = {}
     for name in names:
-        own = [check for check in checks if name in convert_to_list(check["experiment"])]
+        own = [check for check in checks if name in check.experiments]
         columns = factors(key, claim, checks, name)
         repeats = range(
             1
@@ -227,15 +205,15 @@ def made(key, claim, truth) -> dict[str, Results]:
         rows = pd.DataFrame(
             itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]
         ).assign(experiment=name)
-        rng = generator(f"{key}/{claim['id']}/{name}/{truth}")
+        rng = generator(f"{key}/{claim.id}/{name}/{truth}")
         rows["feasible"] = rows["drew"] = True
-        for check in claim["checks"]:
-            for column, wanted in check.get("where", {}).items():
+        for check in claim.checks:
+            for column, wanted in getattr(check, "where", {}).items():
                 if column in metrics.METRICS:
                     rows[column] = wanted
         for check in own:
-            if check["test"] == "share":
-                rows[check["metric"]] = of_event(check, happened(check, truth, len(rows), rng))
+            if check.test == "share":
+                rows[check.metric] = of_event(check, happened(check, truth, len(rows), rng))
         above = levels(own, truth, columns)
         for metric in {place[0] for place in above}:
             rank, spread, offset = np.zeros((3, len(rows)))
@@ -287,8 +265,7 @@ def made(key, claim, truth) -> dict[str, Results]:
 def verdict(key, claim, results, printed=None) -> pd.Series:
     own = study(key)
     functions = study_code.load_functions(own.code_for("functions"))
-    whole = Claim.model_validate(claim)
-    own_claims = [whole.but(variants={name: own[:1] for name, own in whole.variants.items()})]
+    own_claims = [claim.but(variants={name: own[:1] for name, own in claim.variants.items()})]
     repeats = dict.fromkeys(results, 10)
     of_study = for_claims(key)._replace(claims=own_claims, repeats=repeats, labels={})
     material = Material(of_study, results, printed or published(key), functions)
@@ -318,24 +295,20 @@ def test_a_true_sentence_is_supported_and_a_false_one_is_not(key, identity, trut
 # Seconds differ from machine to machine, and with what else a machine does.
 
 
-def is_timed(check) -> bool:
-    return check.get("metric") in metrics.METRICS and metrics.METRICS[check["metric"]].unit == "s"
-
-
 def planners(key, check) -> set[str]:
     """The planners of the methods that a check compares."""
-    groups = groups_of(check) if column_of(check) == "method" else []
+    groups = check.groups_named if check.cells == "method" else []
     return {study(key).methods[name].planner for name in groups}
 
 
 @pytest.mark.parametrize(("key", "identity"), CASES)
 def test_no_claim_is_decided_by_seconds(key, identity):
     """Whether a check names them or a variant does: they are those of our code."""
-    claim = Claim.model_validate(claim_of(key, identity))
+    claim = claim_of(key, identity)
     first, *_ = assignments = variants.list_variants(claim)
     for assignment in assignments:
         for check in variants.apply_variant(claim.checks, first, assignment):
-            assert not (check.primary and is_timed(variants.split_work(check)[0].plain()))
+            assert not (check.primary and variants.split_work(check)[0].timed)
 
 
 @pytest.mark.parametrize(("key", "identity"), CASES)
@@ -345,7 +318,7 @@ def test_counted_work_decides_between_methods_of_one_planner_only(key, identity)
     """
     claim = claim_of(key, identity)
     for check in deciding(key, claim):
-        if check.get("metric") in ("evaluations", "points_evaluated"):
+        if check.metric in ("evaluations", "points_evaluated"):
             assert len(planners(key, check)) <= 1
 
 
@@ -553,9 +526,9 @@ def test_every_claim_is_tried_each_way():
 def test_what_nothing_tests_is_untestable_and_says_why(key, identity):
     claim = claim_of(key, identity)
     row = verdict(key, claim, {})
-    reason, *secondary = claim["checks"]
-    assert all(check["secondary"] for check in secondary)
-    assert (row["verdict"], row["reason"]) == ("untestable", reason["reason"])
+    deciding, *secondary = claim.checks
+    assert all(check.secondary for check in secondary)
+    assert (row["verdict"], row["reason"]) == ("untestable", deciding.reason)
 
 
 @pytest.mark.parametrize("truth", [True, False])
