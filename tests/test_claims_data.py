@@ -5,7 +5,6 @@ exists.
 import string
 import typing
 from functools import cache
-from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -37,39 +36,32 @@ def all_checks():
 
 
 def names_by_column(claim):
-    """(column, value) of every value that the checks of a claim name, `rest` left out, and of its
-    variants.
-    """
-    for check in claim["checks"]:
-        tiers = (check.get(key, []) for key in ("pairs", "order"))
-        groups = chain(check.get("groups", []), check.get("than", []), *chain(*tiers))
-        named = {check.get("across", "method"): [name for name in groups if name != "rest"]}
-        for column, given in chain(named.items(), check.get("where", {}).items()):
+    """(column, value) of every value that the checks of a claim name, `rest` left out."""
+    for check in claim.checks:
+        named = [
+            (check.cells, [name for name in check.groups_named if name != "rest"]),
+            ("metric", [*filter(None, [check.metric, check.pick and check.pick.lowest])]),
+            ("experiment", check.experiments),
+            *getattr(check, "where", {}).items(),
+        ]
+        for column, given in named:
             yield from ((column, value) for value in convert_to_list(given))
-        for key in {"metric", "experiment"} & check.keys():
-            yield from ((key, value) for value in convert_to_list(check[key]))
-        if "pick" in check:
-            yield "metric", check["pick"]["lowest"]
-    for column, values in claim.get("variants", {}).items():
-        yield from ((column, name) for value in values for name in convert_to_list(value))
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_claims_are_numbered(key):
-    ids = [claim["id"] for claim in claims(key)]
+    ids = [claim.id for claim in study(key).claims]
     assert ids == [f"C{number}" for number in range(1, len(ids) + 1)]
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_first_value_of_a_variant_is_what_the_checks_name(key):
     """Or the checks name nothing of its column. Of a list a claim may name some members only."""
-    for claim in claims(key):
-        named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
-        for column, values in claim.get("variants", {}).items():
+    for claim in study(key).claims:
+        named = {*names_by_column(claim)}
+        for column, (first, *_) in claim.variants.items():
             free = all(column != other for other, _ in named)
-            assert free or any((column, name) in named for name in convert_to_list(values[0])), (
-                claim["id"]
-            )
+            assert free or any((column, name) in named for name in convert_to_list(first)), claim.id
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -77,16 +69,9 @@ def test_the_interpretation_in_force_decides(key):
     """Methods that are another reading of a published one are in variants alone, and in
     findings, which may compare readings.
     """
-    others = {
-        name
-        for name, method in checked.read(STUDIES / key / "experiments.yaml")["methods"].items()
-        if "variant_of" in method
-    }
-    for claim in (each for each in claims(key) if not each.get("finding")):
-        named = {
-            name for column, name in names_by_column(claim | {"variants": {}}) if column == "method"
-        }
-        assert not named & others, claim["id"]
+    for claim in (each for each in study(key).claims if not each.finding):
+        named = {name for column, name in names_by_column(claim) if column == "method"}
+        assert not named & study(key).variants().keys(), claim.id
 
 
 @pytest.mark.parametrize("key", KEYS)
