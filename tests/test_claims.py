@@ -441,23 +441,6 @@ def test_family_against_a_worked_example():
     assert len(verdicts.compute_family_p(np.array([]))) == 0
 
 
-def test_a_large_family_of_ten_fields_can_be_contradicted():
-    """Ten pairs give no p below 0.002: in 60 comparisons of one sentence its contrary still comes
-    out.
-    """
-    runs = pd.concat(
-        table(
-            {"a": sample(f"a{k}", 9, n=10), "b": sample(f"b{k}", n=10)},
-            obstacles=k,
-            condition=str(k),
-        )
-        for k in range(60)
-    )
-    row = judged(LOWER | {"every": ["obstacles"], "paired": True}, runs)
-    assert (row["verdict"], row["holds"]) == ("contradicted", "0 of 60")
-    assert row["p_family"] < 0.05
-
-
 @pytest.mark.parametrize(
     ("apart", "wrong"),
     [(0.0, {"supported", "contradicted", "partly"}), (1.0, {"contradicted", "no effect"})],
