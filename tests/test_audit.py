@@ -32,6 +32,10 @@ def spec(columns=(), picks=(), monotone=()):
     return SimpleNamespace(across=list(columns), values=values, monotone=monotone)
 
 
+def read(name):
+    return audit.read_printed_numbers(FOLDER / name)
+
+
 def audited(*rows, n=10, **keys):
     return audit.check_any_paper({"table1": table(*rows, n=n)}, {"table1": spec(**keys)})
 
@@ -227,18 +231,13 @@ def test_decimals_of_means_of_whole_numbers_do_not_count():
 
 def test_numbers_printed_twice_count_once():
     numbers = table(*((str(k), "cpu_s", "mean", f"{k / 7 + 1:.2f}") for k in range(12)))
-    both, specs = (
-        dict.fromkeys(("table1", "table2"), numbers),
-        {name: spec() for name in ("table1", "table2")},
-    )
-    assert marks(audit.check_any_paper(both, specs), "equally likely") == []
+    names = ("table1", "table2")
+    rows = audit.check_any_paper(dict.fromkeys(names, numbers), dict.fromkeys(names, spec()))
+    assert marks(rows, "equally likely") == []
 
 
 def test_decimals_of_ma2020_are_not_equally_likely():
-    tables = {
-        name: audit.read_printed_numbers(str(FOLDER / f"ma2020/published/{name}.csv"))
-        for name in ("table1", "table2")
-    }
+    tables = {name: read(f"ma2020/published/{name}.csv") for name in ("table1", "table2")}
     (row,) = audit.check_digits(tables)
     assert row["place"] == "272 decimals of 68 numbers"
     assert "1 36 13 26 60 16 27 45 25 23, by chance 27.2 each" in row["arithmetic"]
@@ -270,10 +269,6 @@ def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
         "table4": "chi-square 6.58 with 7 degrees of freedom, p = 0.47; the largest difference is "
         "2, the critical one 3.32; p is below 0.05 from 22 runs on",
     }
-
-
-def read(name):
-    return audit.read_printed_numbers(FOLDER / name)
 
 
 @pytest.mark.parametrize(

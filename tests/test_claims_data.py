@@ -5,7 +5,6 @@ exists.
 import string
 import typing
 from functools import cache
-from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ from studies import KEYS, study
 
 from bezierplan.analysis.claims import kinds
 from bezierplan.schema import checked
-from bezierplan.schema.model import Model, convert_to_list, list_keys, parse
+from bezierplan.schema.model import Model, convert_to_list, list_keys
 from bezierplan.study import claims as study_claims
 from bezierplan.study.alternatives import find_default
 
@@ -37,54 +36,32 @@ def all_checks():
 
 
 def names_by_column(claim):
-    """(column, value) of every value that the checks of a claim name, `rest` left out, and of its
-    variants.
-    """
-    for check in claim["checks"]:
-        across = check.get("across", "method")
-        tiers = [
-            check.get("groups", []),
-            check.get("than", []),
-            *check.get("pairs", []),
-            *check.get("order", []),
+    """(column, value) of every value that the checks of a claim name, `rest` left out."""
+    for check in claim.checks:
+        named = [
+            (check.cells, [name for name in check.groups_named if name != "rest"]),
+            ("metric", [*filter(None, [check.metric, check.pick and check.pick.lowest])]),
+            ("experiment", check.experiments),
+            *getattr(check, "where", {}).items(),
         ]
-        yield from ((across, group) for group in chain(*tiers) if group != "rest")
-        yield from (
-            (column, value)
-            for column, given in check.get("where", {}).items()
-            for value in convert_to_list(given)
-        )
-        yield from (
-            (key, value)
-            for key in ("metric", "experiment")
-            if key in check
-            for value in convert_to_list(check[key])
-        )
-        if "pick" in check:
-            yield "metric", check["pick"]["lowest"]
-    for column, values in claim.get("variants", {}).items():
-        yield from ((column, name) for value in values for name in convert_to_list(value))
+        for column, given in named:
+            yield from ((column, value) for value in convert_to_list(given))
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_claims_are_numbered(key):
-    ids = [claim["id"] for claim in claims(key)]
+    ids = [claim.id for claim in study(key).claims]
     assert ids == [f"C{number}" for number in range(1, len(ids) + 1)]
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_first_value_of_a_variant_is_what_the_checks_name(key):
-    """Or the checks name nothing of its column. Lists have equally many members, of which a claim
-    may name some only.
-    """
-    for claim in claims(key):
-        named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
-        for column, values in claim.get("variants", {}).items():
+    """Or the checks name nothing of its column. Of a list a claim may name some members only."""
+    for claim in study(key).claims:
+        named = {*names_by_column(claim)}
+        for column, (first, *_) in claim.variants.items():
             free = all(column != other for other, _ in named)
-            assert free or any((column, name) in named for name in convert_to_list(values[0])), (
-                claim["id"]
-            )
-            assert len({len(convert_to_list(value)) for value in values}) == 1, claim["id"]
+            assert free or any((column, name) in named for name in convert_to_list(first)), claim.id
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -92,16 +69,9 @@ def test_the_interpretation_in_force_decides(key):
     """Methods that are another reading of a published one are in variants alone, and in
     findings, which may compare readings.
     """
-    others = {
-        name
-        for name, method in checked.read(STUDIES / key / "experiments.yaml")["methods"].items()
-        if "variant_of" in method
-    }
-    for claim in (each for each in claims(key) if not each.get("finding")):
-        named = {
-            name for column, name in names_by_column(claim | {"variants": {}}) if column == "method"
-        }
-        assert not named & others, claim["id"]
+    for claim in (each for each in study(key).claims if not each.finding):
+        named = {name for column, name in names_by_column(claim) if column == "method"}
+        assert not named & study(key).variants().keys(), claim.id
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -155,56 +125,3 @@ def test_no_key_of_a_kind_of_test_is_unused(name):
     """A key may be used by one kind and idle in another."""
     used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
     assert set(list_keys(kinds.list_kinds()[name])) - used <= IDLE_KEYS
-
-
-FAULTS = {
-    "a check without a margin": (
-        {"margin": None},
-        "checks: 0: margin: missing key; the smallest effect that matters",
-    ),
-    "a misspelt key": (
-        {"direktion": "lower"},
-        "checks: 0: direktion: unknown key; did you mean direction?",
-    ),
-    "a misspelt kind of test": (
-        {"test": "lowr"},
-        "checks: 0: test: lowr: unknown; did you mean lower?",
-    ),
-    "groups without than": ({"than": None}, "expected groups and than, or pairs"),
-    "an unknown statistic": (
-        {"statistic": "meen"},
-        "checks: 0: statistic: meen: unknown; did you mean mean?",
-    ),
-    "a margin of nothing": (
-        {"margin": 0},
-        "checks: 0: margin: 0: expected the smallest effect that matters",
-    ),
-    "no check that decides": ({"secondary": True}, "checks: "),
-    "a share without a side": ({"test": "share", "threshold": 0.5}, "unknown key"),
-}
-
-
-@pytest.mark.parametrize("name", FAULTS)
-def test_faults(name):
-    change, message = FAULTS[name]
-    check = {
-        "test": "lower",
-        "experiment": "e",
-        "metric": "length",
-        "groups": ["a"],
-        "than": ["b"],
-        "direction": "lower",
-        "margin": 0.1,
-    }
-    check = {key: value for key, value in (check | change).items() if value is not None}
-    claim = {
-        "id": "C1",
-        "place": "1",
-        "statement": "a is shorter than b.",
-        "artefact": "table1",
-        "checks": [check],
-    }
-    with pytest.raises(checked.Fault) as fault:
-        parse(study_claims.ClaimsFile, {"claims": [claim]}, "here")
-    assert message in str(fault.value)
-    assert "\n" not in str(fault.value)

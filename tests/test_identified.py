@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from studies import FOLDER, drawing
+from studies import FOLDER, drawing, problem_of, published
 
 from bezierplan.analysis import measures
 from bezierplan.analysis.audit import audit, identified
@@ -97,15 +97,8 @@ def test_chance_of_as_many():
 
 def of_song2016(method):
     """What the audit says of the printed lengths of one of its methods, and of all together."""
-    grid = from_lines(
-        (FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit"
-    )
     published = audit.read_printed_numbers(FOLDER / "song2016/published/table1.csv")
-    ends = {name: tuple(map(int, name.split("_"))) for name in published["problem"].unique()}
-    problems = {
-        name: Problem(name, grid, grid.centre(start), grid.centre(target))
-        for name, (start, target) in ends.items()
-    }
+    problems = {name: problem_of("song2016", name) for name in published["problem"].unique()}
     entry = Identify(metric="objective", where={"method": method}, edges=7, because="polyline")
     *rows, together = identified.check_declared_paths("table1", published, [entry], problems)
     return rows, together
@@ -166,7 +159,7 @@ def test_generation_by_which_a_share_of_the_improvement_is_made():
 
 @pytest.mark.parametrize("ends", ["0_15", "15_255", "240_255", "0_240"])
 def test_drawn_paths_of_song2016_have_the_printed_length(ends):
-    table = pd.read_csv(FOLDER / "song2016/published/table1.csv").query("metric == 'objective'")
+    table = published("song2016")["table1"].query("metric == 'objective'")
     printed = table.set_index(["problem", "method"])["value"][ends, "nonsmooth"]
     marks = drawing("song2016", f"identified_{ends}")
     for _, line in marks[marks["mark"] == "line"].groupby("group"):
@@ -175,8 +168,8 @@ def test_drawn_paths_of_song2016_have_the_printed_length(ends):
 
 
 def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_is():
-    square = Problem("", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
-    problems, found = {f"environment{n}": square for n in (1, 2)}, {}
+    names, found = ("environment1", "environment2"), {"min": 0, "max": 0}
+    problems = {name: problem_of("ma2020", name) for name in names}
     for n in (1, 2):
         published = audit.read_printed_numbers(FOLDER / f"ma2020/published/table{n}.csv")
         for statistic in ("min", "max"):
@@ -186,11 +179,12 @@ def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_i
             *rows, together = identified.check_declared_paths(
                 f"table{n}", published, [entry], problems
             )
-            found[statistic] = found.get(statistic, 0) + together["printed"]
+            found[statistic] += together["printed"]
             if statistic == "min":
                 assert chance_of(together) < 1e-5
     assert found == {"min": 7, "max": 0}
     assert rows[3]["printed"] == 34.7728
+    square = problems["environment1"]
     moves = identified.find_moves(square, 32.3821, 1.414)
     assert (moves.paths, moves.length) == ([(14, 13)], pytest.approx(32.382))
     assert 0 < moves.chance < 0.02

@@ -231,12 +231,6 @@ def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, ab
 # Measures
 
 
-@pytest.mark.parametrize(("second", "first"), [(12.5, 1), (12.6, 2)])
-def test_the_first_generation_within_a_quarter(second, first):
-    runs = pd.DataFrame({"history": [[16.0, second, 10.0, 10.0]]})
-    assert measures.find_first_generation(0.25, runs, {}).tolist() == [first]
-
-
 def test_near_the_shortest_within_a_quarter():
     runs = pd.DataFrame(
         {"length": [12.5, 12.6, 10.0], "bound": 10.0, "feasible": [True, True, False]}

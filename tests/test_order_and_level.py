@@ -66,7 +66,7 @@ def judged(ours, means, paired=True):
     printed = pd.DataFrame({"method": METHODS, "metric": "objective", "statistic": "mean"})
     printed = printed.assign(n=PAPER, unit="m", value=np.round(means, 4))
     spec = pivot_of(SPEC)
-    compared = comparison.compare(ours, spec, printed, {}, [], "s/table1")
+    compared = comparison.compare(ours, spec, printed, {}, [], "s/table1", [], {})
     return order_and_level.compare_columns(ours, spec, compared, "s/table1", paired).set_index(
         "quantity"
     )

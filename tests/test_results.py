@@ -37,12 +37,15 @@ def runs(lengths, feasible=True):
     return pd.DataFrame(rows | {"feasible": feasible, "objective": lengths, "drew": True})
 
 
+def join(table: pd.DataFrame) -> pd.DataFrame:
+    """The runs with the bounds of their problem."""
+    return results.join_bounds(table, {"disc": DISC}, BOUNDS).runs
+
+
 def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
-    with pytest.raises(
-        ValueError,
-        match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound",
-    ):
-        results.join_bounds(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
+    told = r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound"
+    with pytest.raises(ValueError, match=told):
+        join(runs([5.0, 4.5, 6.0]))
 
 
 def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal():
@@ -64,35 +67,20 @@ def test_a_run_stands_for_each_repeat_where_nothing_was_drawn_and_all_are_equal(
     )
     for varied, same in (("path_points", "history"), ("history", "path_points")):
         lists = {varied: [[each] for each in made["found"]], same: [[0.0]] * len(made)}
-        joined = results.join_bounds(made.assign(**lists), {"disc": DISC}, BOUNDS).runs
-        assert joined[["method", "repeat"]].values.tolist() == [
-            [method, repeat] for method in "abcd" for repeat in (0, 1)
-        ]
-        assert [name[-3:] for name in joined["id"][2:]] == [
-            "b/0",
-            "b/0",
-            "c/0",
-            "c/0",
-            "d/0",
-            "d/1",
-        ]
+        joined = join(made.assign(**lists))
+        repeats = joined["method"] + joined["repeat"].astype(str)
+        assert repeats.to_list() == ["a0", "a1", "b0", "b1", "c0", "c1", "d0", "d1"]
+        runs_shown = joined["id"].str[-3:].to_list()
+        assert runs_shown == ["a/0", "a/1", "b/0", "b/0", "c/0", "c/0", "d/0", "d/1"]
         assert np.flatnonzero(results.is_repeated(joined)).tolist() == [3, 5]
 
 
 def test_colliding_path_may_be_shorter_than_the_bound():
-    assert (
-        len(
-            results.join_bounds(
-                runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS
-            ).runs
-        )
-        == 2
-    )
+    assert len(join(runs([5.0, 4.0], feasible=[True, False]))) == 2
 
 
 def test_bound_itself_and_what_the_tolerance_leaves_of_it_are_accepted():
-    joined = results.join_bounds(runs([BOUND, BOUND - 5e-9]), {"disc": DISC}, BOUNDS)
-    assert joined.runs["bound"].tolist() == [BOUND, BOUND]
+    assert join(runs([BOUND, BOUND - 5e-9]))["bound"].tolist() == [BOUND, BOUND]
 
 
 @pytest.mark.parametrize(
@@ -116,18 +104,17 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     """A row names its problem or workspace, the table's interpretation does, or the experiment has
     only one; spreads are no lengths.
     """
-    rows = [
-        ("a", "length", "min", 8.9),
-        ("a", "length", "mean", 9.1),
-        ("a", "length", "std", 0.5),
-        ("a", "cpu_s", "mean", 0.1),
-    ]
-    table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(
-        as_printed=["8.9", "9.1", "0.5", "0.1"]
+    table = pd.DataFrame(
+        {
+            "method": "a",
+            "metric": ["length", "length", "length", "cpu_s"],
+            "statistic": ["min", "mean", "std", "mean"],
+            "as_printed": ["8.9", "9.1", "0.5", "0.1"],
+        }
     )
-    one, two = (
-        pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2)
-    )
+    table["value"] = table["as_printed"].astype(float)
+    two = pd.DataFrame({"bound": [9.0, 5.0]}, index=["disc", "other"])
+    one = two.iloc[:1]
 
     def audited(table, bounds, primary):
         return [row["consistent"] for row in audit.check_lengths("t", table, bounds, primary)]

@@ -18,7 +18,7 @@ ROW = {
     "high95": 5.0,
     "margin": 0.5,
 }
-ROW |= {"effect_size": 4.96, "counted": "0 of 10, 10 of 10", "together": None}
+ROW |= {"counted": "0 of 10, 10 of 10", "together": None}
 ROW |= {"place": json.dumps({"problem": "case1"})}
 SHARE = {
     "test": "share",

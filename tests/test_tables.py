@@ -29,10 +29,17 @@ SPEC = {
             "label": "number of evaluations",
             "decimals": 0,
         },
-        {"metric": "length", "statistic": "median", "label": "length", "decimals": 2},
+        {"metric": "length", "statistic": "median", "decimals": 2},
     ],
 }
 LABELS = {"long": "the long one", "plain": "plain method"}
+
+
+def of_values(*values: tuple[str, str], **keys) -> dict:
+    """The table with other values, given by metric and statistic, and further keys."""
+    described = [dict(zip(("metric", "statistic"), value)) for value in values]
+    return SPEC | {"values": described} | keys
+
 
 PUBLISHED = """problem,method,metric,statistic,n,unit,value
 long,plain,length,unstated,,m,{plain}
@@ -71,19 +78,23 @@ def published(plain: float = 10.0) -> pd.DataFrame:
     return pd.read_csv(io.StringIO(PUBLISHED.format(plain=plain)))
 
 
+def with_texts() -> pd.DataFrame:
+    """The published numbers with their digits."""
+    return published().assign(as_printed=["10", "10.00", "1000"])
+
+
 def printed(metric: str, statistic: str, n: float, numbers: dict) -> pd.DataFrame:
     """Published numbers: (problem, method) -> value."""
     rows = [(*place, metric, statistic, n, "-", value) for place, value in numbers.items()]
-    return pd.DataFrame(rows, columns=PUBLISHED.partition("\n")[0].split(","))
+    return pd.DataFrame(rows, columns=published().columns)
 
 
 def pivot(ours: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
-    printed = published().assign(as_printed=["10", "10.00", "1000"])
-    return tables.build_pivot(ours, pivot_of(spec), labels, printed)
+    return tables.build_pivot(ours, pivot_of(spec), labels, with_texts())
 
 
 def beside(ours: Results, spec: dict, printed: pd.DataFrame, **variants: str) -> pd.DataFrame:
-    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1")
+    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1", [], {})
 
 
 def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
@@ -129,7 +140,7 @@ def test_a_table_in_the_papers_form_shows_small_numbers_and_the_printed_ones_in_
     own = table["length: fast"]
     assert own.str.fullmatch(r"0\.0+[1-9]\d+").all(), "two digits at least"
     assert own.str.len().nunique() == 1, "a column has one number of decimals"
-    laid = in_cells(ours, spec, LABELS, published().assign(as_printed=["10", "10.00", "1000"]))
+    laid = in_cells(ours, spec, LABELS, with_texts())
     assert laid.index.equals(table.index)
     assert list(laid) == list(table)
     assert laid.loc["the long one"].to_list() == ["", "1000", "10", "10.00"]
@@ -140,10 +151,8 @@ def in_cells(
     ours: Results, spec: dict, labels: dict[str, str], printed: pd.DataFrame
 ) -> pd.DataFrame:
     """Printed numbers in the cells of their table."""
-    table, placed = (
-        pivot(ours, spec, labels),
-        beside(ours, spec, printed).dropna(subset="as_printed"),
-    )
+    table = pivot(ours, spec, labels)
+    placed = beside(ours, spec, printed).dropna(subset="as_printed")
     return tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
 
 
@@ -160,9 +169,9 @@ def test_labels_lose_no_printed_number(labels, titles):
     values may be of one metric.
     """
     values = [
-        {"metric": "length", "statistic": ["median", "min"], "label": titles[0], "decimals": 2},
-        {"metric": "evaluations", "statistic": "median", "label": titles[1], "decimals": 0},
-        {"metric": "length", "statistic": "max", "label": "most", "decimals": 2},
+        {"metric": "length", "statistic": ["median", "min"], "label": titles[0]},
+        {"metric": "evaluations", "statistic": "median", "label": titles[1]},
+        {"metric": "length", "statistic": "max", "label": "most"},
     ]
     numbers = pd.DataFrame(
         [
@@ -171,7 +180,7 @@ def test_labels_lose_no_printed_number(labels, titles):
             for value in ("length unstated", "length min", "evaluations median", "length max")
             for names in [(*place, *value.split())]
         ],
-        columns=[*PUBLISHED.partition("\n")[0].split(","), "as_printed"],
+        columns=[*published(), "as_printed"],
     )
     for index, columns in (
         (["problem"], ["value", "method"]),
@@ -213,8 +222,8 @@ def test_a_deterministic_method_has_one_run_under_each_condition():
 def test_failed_runs_are_never_averaged():
     ours = results()
     feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    spec = SPEC | {"values": [{"metric": "length", "statistic": "mean", "decimals": 6}]}
-    assert pivot(ours, spec, {}).loc["long", "length: plain"] == f"{feasible.mean():.6f}"
+    means = pivot(ours, of_values(("length", "mean")), {})
+    assert means.loc["long", "length: plain"] == f"{feasible.mean():.6f}"
     found = row(compare(ours), "long", "plain", "length")
     assert found["n_ours"] == 16
     assert found["value_ours"] == feasible.median()
@@ -222,12 +231,8 @@ def test_failed_runs_are_never_averaged():
 
 def test_count_stands_beside_what_leaves_failed_runs_out():
     """One for all statistics of the same runs, and none where every run counts."""
-    length = {"metric": "length", "statistic": ["min", "max", "mean"], "label": "length"}
-    spec = {
-        "where": {"method": "plain"},
-        "index": ["problem"],
-        "values": [length, {"metric": "evaluations", "statistic": "mean"}],
-    }
+    values = ("length", ["min", "max", "mean"]), ("evaluations", "mean")
+    spec = of_values(*values, where={"method": "plain"}, columns=["value", "statistic"])
     ours = results()
     ours.runs.loc[ours.runs["problem"] == "brief", "feasible"] = True
     table = pivot(ours, spec, {})
@@ -271,58 +276,36 @@ def test_no_runs_at_all():
 
 
 def test_where_of_a_value_and_several_statistics():
-    spec = {
-        "where": {"problem": "brief"},
-        "index": ["statistic"],
-        "columns": ["method", "value"],
-        "values": [
-            {
-                "metric": "length",
-                "statistic": ["min", "max"],
-                "where": {"repeat": [1, 2]},
-                "decimals": 3,
-            }
-        ],
-    }
+    ends = {"metric": "length", "statistic": ["min", "max"], "where": {"repeat": [1, 2]}}
+    spec = {"where": {"problem": "brief"}, "values": [ends]}
+    spec |= {"index": ["statistic"], "columns": ["method", "value"]}
     ours = results()
     table = pivot(ours, spec, {})
     two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
     assert table.index.to_list() == ["min", "max"]
-    assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
+    assert table["plain: length"].to_list() == [f"{two.min():.6f}", f"{two.max():.6f}"]
     # All of these runs have a path.
-    assert table.columns.to_list() == [
-        "fast: length",
-        "faster: length",
-        "plain: length",
-    ]
+    assert list(table) == ["fast: length", "faster: length", "plain: length"]
 
 
 def test_words_left_out_become_levels_where_needed():
-    length = {"metric": "length", "statistic": "mean"}
-    one = {"index": ["problem"], "columns": ["method"], "values": [length]}
-    assert pivot(results(), one, {}).columns.to_list() == [
-        "fast",
-        "faster",
-        "plain",
-        "runs counted: fast to plain",
-    ]
-    lone = {"index": ["problem", "method"], "values": [length]}
-    assert pivot(results(), lone, {}).columns.to_list() == ["length", "runs counted: length"]
-    several = {
-        "index": ["problem", "method"],
-        "values": [
-            length | {"statistic": ["min", "max"]},
-            {"metric": "evaluations", "statistic": "mean"},
-        ],
-    }
-    table = pivot(results(), several, {})
-    assert table.columns.to_list() == [
-        "length: min",
-        "length: max",
-        "runs counted: length",
-        "evaluations: mean",
-    ]
-    assert table.index.names == ["problem", "method"]
+    mean = {"metric": "length", "statistic": "mean"}
+    ends, work = mean | {"statistic": ["min", "max"]}, mean | {"metric": "evaluations"}
+    both, counted = ["problem", "method"], "runs counted: "
+    for spec, columns in (
+        (
+            {"index": ["problem"], "columns": ["method"], "values": [mean]},
+            ["fast", "faster", "plain", f"{counted}fast to plain"],
+        ),
+        ({"index": both, "values": [mean]}, ["length", f"{counted}length"]),
+        (
+            {"index": both, "values": [ends, work]},
+            ["length: min", "length: max", f"{counted}length", "evaluations: mean"],
+        ),
+    ):
+        table = pivot(results(), spec, {})
+        assert list(table) == columns
+        assert list(table.index.names) == spec["index"]
 
 
 def test_order_of_the_runs_never_changes_a_byte():
@@ -356,13 +339,16 @@ def test_rows_of_the_comparison():
     assert table["metric"].to_list() == ["evaluations", "length"] * 6
 
 
+OF_PRINTED = ["n_published", "value_published", "low95_predicted", "position"]
+
+
 def test_published_numbers_and_those_of_variants():
     table = compare(results())
     assert row(table, "long", "fast", "length")["value_published"] == 10
     assert row(table, "long", "faster", "length")["value_published"] == 10
     assert row(table, "long", "faster", "evaluations")["n_published"] == 20
     empty = row(table, "brief", "plain", "length")
-    assert empty[["n_published", "value_published", "low95_predicted", "position"]].isna().all()
+    assert empty[OF_PRINTED].isna().all()
     assert empty["low95_ours"] < empty["value_ours"] < empty["high95_ours"]
 
 
@@ -385,10 +371,7 @@ def test_seconds_of_another_machine_are_shown_but_not_judged():
     ours = results()
     ours.runs["cpu_s"] = 0.01
     given = printed("cpu_s", "mean", 30, {("long", "plain"): 200.0}).assign(unit="s")
-    spec = SPEC | {
-        "values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]
-    }
-    found = row(beside(ours, spec, given), "long", "plain", "cpu_s")
+    found = row(beside(ours, of_values(("cpu_s", "mean")), given), "long", "plain", "cpu_s")
     assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
     assert found["position"] == comparison.NO_RANGE
 
@@ -401,17 +384,13 @@ def test_shares_bound_and_gap():
     assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
 
 
-LEAST = SPEC | {
-    "values": [{"metric": "length", "statistic": "min", "label": "length", "decimals": 2}]
-}
-
-
 def least(plain, fast=11.0, n=20, other=11.0):
     """The row of the least length of `plain` on the problem `long`, whose bound is 9, beside
     published ones.
     """
     values = {("long", "plain"): plain, ("long", "fast"): fast, ("long", "other"): other}
-    table = beside(results(), LEAST, printed("length", "min", n, values).dropna())
+    numbers = printed("length", "min", n, values).dropna()
+    table = beside(results(), of_values(("length", "min")), numbers)
     return row(table, "long", "plain", "length")
 
 
@@ -423,16 +402,18 @@ def test_published_minimum_below_the_bound_is_impossible_and_lies_below():
 
 
 @pytest.mark.parametrize(
-    ("reason", "changed", "defined", "given"),
+    ("reason", "changed", "defined", "reconstructed", "fitted"),
     [
-        (comparison.UNDEFINED, {}, False, ()),
-        (comparison.NO_MAP, {}, True, (["long"],)),
-        ("", {}, True, (["brief"],)),
-        (comparison.ONE_DRAW, {"layout": 3}, True, ()),
-        (comparison.FITTED, {}, True, ((), {"length": {"method": ["plain"]}})),
+        (comparison.UNDEFINED, {}, False, [], {}),
+        (comparison.NO_MAP, {}, True, ["long"], {}),
+        ("", {}, True, ["brief"], {}),
+        (comparison.ONE_DRAW, {"layout": 3}, True, [], {}),
+        (comparison.FITTED, {}, True, [], {"length": {"method": ["plain"]}}),
     ],
 )
-def test_why_a_position_proves_nothing_stands_beside_it(reason, changed, defined, given):
+def test_why_a_position_proves_nothing_stands_beside_it(
+    reason, changed, defined, reconstructed, fitted
+):
     values = [entry | {"defined": defined} for entry in SPEC["values"]]
     ours = results()._replace(runs=results().runs.assign(**changed))
     for value in (10.0, 100.0):
@@ -444,7 +425,8 @@ def test_why_a_position_proves_nothing_stands_beside_it(reason, changed, defined
             {"faster": "fast"},
             [],
             "study/table1",
-            *given,
+            reconstructed,
+            fitted,
         )
         found = row(table, "long", "plain", "length")
         assert (found["reason"], found["position"]) == (reason, before["position"])
@@ -463,14 +445,11 @@ def test_a_range_that_holds_half_of_the_other_numbers_is_too_wide(fast, other, w
 
 
 def test_number_that_the_metric_cannot_have_is_not_possible():
-    spec = SPEC | {
-        "values": [{"metric": "evaluations", "statistic": "mean", "label": "e", "decimals": 0}]
-    }
     values = {("long", "plain"): -1.0, ("long", "fast"): 1000.0}
-    table = beside(results(), spec, printed("evaluations", "mean", 9, values))
-    assert [
-        row(table, "long", method, "evaluations")["possible"] for method in ("plain", "fast")
-    ] == [False, True]
+    numbers = printed("evaluations", "mean", 9, values)
+    table = beside(results(), of_values(("evaluations", "mean")), numbers)
+    found = [row(table, *place, "evaluations")["possible"] for place in values]
+    assert found == [False, True]
 
 
 def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
@@ -489,11 +468,8 @@ def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
     ours = results()
     ours = ours._replace(runs=ours.runs.assign(octile_bound=11.0, path_curve="", path_points=None))
     wanted = {"length": "gap", "cells4": "gap4", "cells8": "gap8"}
-    values = [
-        {"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted
-    ]
-    spec = pivot_of(SPEC | {"values": values, "where": {"problem": "long"}})
-    cells = tables.compute_cells(ours, spec, ["problem", "method"])
+    spec = of_values(*((metric, "mean") for metric in wanted), where={"problem": "long"})
+    cells = tables.compute_cells(ours, pivot_of(spec), ["problem", "method"])
     for column in ("bound", "least"):
         found = cells.groupby("metric")[column].unique().map(list).to_dict()
         assert found == {"length": [9.0], "cells4": [11.0], "cells8": [11.0]}
@@ -501,11 +477,9 @@ def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
 
 
 def test_published_number_without_runs_keeps_its_row():
-    found = row(
-        compare(results(), spec=SPEC | {"where": {"method": ["fast"]}}), "long", "plain", "length"
-    )
-    assert found["value_published"] == 10
-    assert found["n_ours"] == 0
+    alone = compare(results(), spec=SPEC | {"where": {"method": ["fast"]}})
+    found = row(alone, "long", "plain", "length")
+    assert (found["value_published"], found["n_ours"]) == (10, 0)
     assert math.isnan(found["value_ours"])
 
 
@@ -522,11 +496,7 @@ def test_published_file(tmp_path):
 def test_table_without_published_numbers():
     table = beside(results(), SPEC, comparison.read_published(None, pivot_of(SPEC)))
     assert len(table) == 8
-    assert (
-        table[["n_published", "value_published", "low95_predicted", "position"]]
-        .isna()
-        .all(axis=None)
-    )
+    assert table[OF_PRINTED].isna().all(axis=None)
     assert table["value_ours"].notna().all()
 
 
@@ -558,40 +528,26 @@ def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as
     file.write_text(
         "method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n"
     )
-    reading = pivot_of(SPEC | {"published": "table.csv", "reads": {"length": "cells4"}})
-    assert comparison.read_published(str(file), reading)["metric"].to_list() == ["cells4", "cpu_s"]
-    assert comparison.read_published(str(file), pivot_of(SPEC))["metric"].to_list() == [
-        "length",
-        "cpu_s",
-    ]
+    for reads, metric in (({"length": "cells4"}, "cells4"), ({}, "length")):
+        spec = pivot_of(SPEC | {"published": "table.csv", "reads": reads})
+        assert comparison.read_published(str(file), spec)["metric"].to_list() == [metric, "cpu_s"]
 
 
 def test_printed_ranks_that_no_runs_have_are_impossible():
     """Two methods' mean ranks add to 3 on every problem, up to rounding; on the long one these do
     not.
     """
-    spec = {
-        "index": ["method"],
-        "columns": ["problem", "value"],
-        "values": [{"metric": "rank", "statistic": "mean", "label": "mean rank", "decimals": 1}],
-    }
+    spec = {"index": ["method"], "columns": ["problem", "value"]}
+    spec |= {"values": [{"metric": "rank", "statistic": "mean"}]}
     ours = results()
     runs = ours.runs[ours.runs["method"] != "faster"].assign(
         objective=ours.runs["length"], condition=ours.runs["problem"], vary=""
     )
-    numbers = {
-        ("long", "plain"): 1.2,
-        ("long", "fast"): 1.6,
-        ("brief", "plain"): 1.4,
-        ("brief", "fast"): 1.7,
-    }
-    table = beside(ours._replace(runs=runs), spec, printed("rank", "mean", 20, numbers))
-    assert table.set_index(["problem", "method"])["possible"].to_dict() == {
-        ("long", "plain"): False,
-        ("long", "fast"): False,
-        ("brief", "plain"): True,
-        ("brief", "fast"): True,
-    }
+    places = [*itertools.product(("long", "brief"), ("plain", "fast"))]
+    numbers = printed("rank", "mean", 20, dict(zip(places, (1.2, 1.6, 1.4, 1.7))))
+    table = beside(ours._replace(runs=runs), spec, numbers)
+    found = table.set_index(["problem", "method"])["possible"]
+    assert found[places].to_list() == [False, False, True, True]
 
 
 def test_rows_of_the_papers_interpretation_are_primary():

@@ -383,8 +383,8 @@ class Summary(Job):
         study_code.load_functions(self.code)
         summed = summary.gather(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
-            list(input_files.order_and_level),
-            list(input_files.claims),
+            input_files.order_and_level,
+            input_files.claims,
         )
         for name, table in summed.items():
             self.write(table, getattr(output_files, name))

@@ -33,9 +33,9 @@ CORNER = 1e-6
 ROUNDED = 0.01
 
 
-def find_disagreements(claimed: bool, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def find_disagreements(claimed: bool, runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return where (n,) the planner's own test gives this result and the checker the opposite."""
-    return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
+    return (runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)
 
 
 @metric(
@@ -45,12 +45,12 @@ def find_disagreements(claimed: bool, runs: pd.DataFrame, problems: Problems) ->
     least=1.0,
     step=0.5,
 )
-def rank(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def rank(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Rank the objective within one unit (n,), among methods or numbers of obstacles; ties share
     the mean of their ranks.
     """
     unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
-    return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
+    return runs.groupby(unit, dropna=False)["objective"].rank()
 
 
 def read_reference(runs: pd.DataFrame) -> pd.Series:
@@ -92,11 +92,11 @@ def gap(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     return runs["length"] / runs["bound"] - 1
 
 
-def is_near_shortest(share: float, runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def is_near_shortest(share: float, runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Tell which runs (n,) have a path that the certified checker accepts and that is at most this
     share longer than the exact shortest one.
     """
-    return (certified_length(runs, problems) <= (1 + share) * runs["bound"]).to_numpy()
+    return certified_length(runs, problems) <= (1 + share) * runs["bound"]
 
 
 @metric(
@@ -199,14 +199,6 @@ def corners(path: Path) -> int:
     )
 
 
-def count_free_cells(path: Path, grid: Grid) -> int | None:
-    """Count the cells that a path touches; None if one of them is occupied."""
-    from bezierplan.geometry import cell_length
-
-    columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
-    return None if cell_length.count_occupied_cells(columns, rows, grid.occupied) else len(columns)
-
-
 @on_map(
     "-",
     "number of cells that the path touches; none for a path that touches an occupied cell",
@@ -216,8 +208,11 @@ def count_free_cells(path: Path, grid: Grid) -> int | None:
 )
 def cells(path: Path, grid: Grid) -> float:
     """Count the cells that a path touches; NaN for one that touches an occupied cell."""
-    free = count_free_cells(path, grid)
-    return np.nan if free is None else float(free)
+    from bezierplan.geometry import cell_length
+
+    columns, rows = cell_length.list_touched_cells(*cell_length.sample_in_cells(path, grid))
+    occupied = cell_length.count_occupied_cells(columns, rows, grid.occupied)
+    return np.nan if occupied else float(len(columns))
 
 
 @metric("-", "whether an obstacle is in the way, so that no straight line is free", step=1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -153,7 +153,7 @@ def of_path(unit: str, meaning: str, **facts: Any) -> Callable[[F], F]:
 
     def apply_to_runs(measure: Callable[[Path], float]) -> Compute:
         """Turn a measure of a path into one of (runs, problems)."""
-        return lambda runs, _: measure_paths([measure] * len(runs), runs)
+        return partial(measure_on_maps, lambda path, _: measure(path))
 
     return metric(unit, meaning, apply_to_runs, **{"feasible_only": True} | facts)
 
@@ -166,37 +166,31 @@ def on_map(unit: str, meaning: str, *kinds: str, **facts: Any) -> Callable[[F], 
     return metric(unit, meaning, lambda measure: partial(measure_on_maps, measure), **facts)
 
 
-def measure_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
-    """Measure each run's path by its own measure; NaN where the run has none. Equal measures of
-    equal paths are taken once.
+def measure_on_maps(
+    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: Problems
+) -> list[float]:
+    """Measure each run's path in its workspace; NaN where the run has none. Equal measures of equal
+    paths are taken once.
     """
-    given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
+    given = zip(runs["path_curve"], runs["path_points"], runs["problem"])
     return [
         # Bytes, because an array cannot be a key of the cache.
-        _measure_path(measure, curve, np.asarray(points, dtype=float).tobytes())
-        for measure, curve, points in given
+        _measure(
+            measure, curve, np.asarray(points, dtype=float).tobytes(), problems[problem].workspace
+        )
+        for curve, points, problem in given
     ]
 
 
 @lru_cache(MEASURES_KEPT)
-def _measure_path(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
+def _measure(
+    measure: Callable[[Path, Workspace], float], curve: str, points: bytes, workspace: Workspace
+) -> float:
     """Measure a path, given by its curve kind and the bytes of its points, by which results are
     remembered.
     """
     from bezierplan.workspaces.problem import Path
 
-    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
-
-
-def measure_on_maps(
-    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: Problems
-) -> list[float]:
-    """Measure each run's path in its workspace; NaN where the run has none."""
-    from bezierplan.workspaces.problem import Path
-
-    return [
-        measure(Path(curve, np.reshape(points, (-1, 2))), problems[problem].workspace)
-        if curve
-        else np.nan
-        for curve, points, problem in zip(runs["path_curve"], runs["path_points"], runs["problem"])
-    ]
+    if not curve:
+        return np.nan
+    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2)), workspace)

@@ -69,12 +69,9 @@ def compute_values(runs: pd.DataFrame, name: str, problems: Problems) -> pd.Seri
         numbers = pd.Series(dtype=float)
     elif lacking:
         raise ValueError(f"metric {name}: no run has it: their table has no column {lacking[0]}")
-    elif metric.compute is None:
-        numbers = counted[name].astype(float)
     else:
-        numbers = pd.Series(
-            np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index
-        )
+        values = metric.compute(counted, problems) if metric.compute else counted[name]
+        numbers = pd.Series(np.asarray(values, dtype=float), index=counted.index)
         if metric.own and (infinite := np.isinf(numbers)).any():
             run = counted.loc[infinite.idxmax(), "id"]
             raise ValueError(

@@ -121,7 +121,7 @@ def join_bounds(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.Dat
     bounds = bounds.set_index("problem")
     runs = _repeat_fixed_runs(runs)
     # The allowance is for the check below alone.
-    runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
+    runs = runs.join(bounds.drop(columns="least_length"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     # Runs without a path have no length: nan is not below the bound.
     _refuse(runs, runs["length"] < least, "length", "bound")

@@ -103,18 +103,12 @@ def compute_statistic(name: str, values: np.ndarray) -> float:
 
 
 def resample(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """Draw `size` values with replacement from values (n,), n at least 1, DRAWS times, and return a
-    named statistic of each draw (DRAWS,).
-
-    Above `MOST_DRAWN` values it is the normal approximation; where that is not known, draws of so
-    many values.
+    """Draw `size` values, at most `MOST_DRAWN`, with replacement from values (n,), n at least 1,
+    DRAWS times, and return a named statistic of each draw (DRAWS,).
     """
-    if values.min() == values.max() and size <= MOST_DRAWN:
-        return np.full(DRAWS, STATISTICS[name](np.full(size, values[0])))  # all draws are alike
-    if size > MOST_DRAWN and _is_normal(name, values):
-        # In random order, since draws of several cells are added.
-        return rng.permutation(_approximate_draws(name, values, 1 / size))
     size = min(size, MOST_DRAWN)
+    if values.min() == values.max():
+        return np.full(DRAWS, STATISTICS[name](np.full(size, values[0])))  # all draws are alike
     return _draw_in_blocks(
         name,
         size,

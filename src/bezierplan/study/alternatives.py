@@ -216,8 +216,7 @@ def limit_runs(study: Study) -> Study:
     for name, content in study.experiments.items():
         fields = [problems[each].layouts for each in content.problems if problems[each].layouts]
         layouts = max((max(each.values()) for each in fields), default=1)
-        # One run on each layout remains, even where there are more layouts than runs are wanted.
-        most = max(1, FEW // layouts)
+        most = FEW // layouts
         # `fewer` could ask for more runs than the limit.
         experiments[name] = content.but(
             repeats=_limit(content.repeats, most), chunk=_limit(content.chunk, most), fewer={}

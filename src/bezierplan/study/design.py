@@ -137,7 +137,7 @@ def build_design(study: Study, experiment: str) -> Design:
     )
 
 
-def join_designs(designs: list[Design], without: Iterable[str] = ()) -> Design:
+def join_designs(designs: list[Design], without: Iterable[str]) -> Design:
     """Return the planned runs of several experiments, without those of some methods."""
     rows = pd.concat([each.rows for each in designs])
     return Design(

@@ -61,8 +61,8 @@ def check_lengths(
     """
     rule = "a path is no shorter than the shortest path"
     lengths = table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
-    for _, row in table[lengths].iterrows():
-        described = primary | row.to_dict()
+    for row in table[lengths].to_dict("records"):
+        described = primary | row
         problem = described.get("problem", described.get("workspace"))
         if problem is None and len(bounds) == 1:
             problem = bounds.index[0]
@@ -103,22 +103,15 @@ def check_statistics(item: str, table: pd.DataFrame, picks: list[str]) -> Iterat
     """
     keys = list_key_columns(table)
     for rows in group_rows(table, [*keys, "metric"]):
-        where, metric = (
-            describe_cell(rows.iloc[0], [*keys, "metric"]),
-            METRICS[rows["metric"].iloc[0]],
-        )
+        where, name = describe_cell(rows.iloc[0], [*keys, "metric"]), rows["metric"].iloc[0]
+        metric, sizes = METRICS[name], rows["n"].dropna()
         texts = dict(zip(rows["statistic"], rows["as_printed"]))
-        sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(sizes.max()) if len(sizes) else 0
         # Otherwise only some of these runs count, and how many is not printed.
-        whole = (
-            not metric.feasible_only
-            and rows["metric"].iloc[0] not in picks
-            and sizes.nunique() == 1
-        )
-        for name, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
-            of_number = f"{where}, statistic={name}"
-            yield build_audit_row(item, of_number, rule, float(texts[name]), limit, fits, told)
+        whole = not metric.feasible_only and name not in picks and sizes.nunique() == 1
+        for statistic, rule, limit, fits, told in _check_cell(texts, n, metric, whole):
+            place, printed = f"{where}, statistic={statistic}", float(texts[statistic])
+            yield build_audit_row(item, place, rule, printed, limit, fits, told)
 
 
 def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iterator[tuple]:
@@ -199,7 +192,7 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
         yield build_audit_row(item, location, rule, added, total, adds, arithmetic)
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
-        for (_, row), number in zip(group.iterrows(), numbers):
+        for row, number in zip(group.to_dict("records"), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             arithmetic = f"1 <= {row['as_printed']} <= {count}"
             of_row = describe_cell(row, [*keys, "metric"])
@@ -253,7 +246,7 @@ def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dic
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
     for group in group_rows(numbers, others):
-        ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
+        ordered = group.sort_values(rule.along, kind="stable").to_dict("records")
         for before, row in itertools.pairwise(ordered):
             pair = [possible.read_printed(each["as_printed"]) for each in (before, row)]
             fits = possible.is_in_order(*(pair if rule.direction == "up" else pair[::-1]))

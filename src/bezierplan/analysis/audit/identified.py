@@ -70,10 +70,8 @@ def list_edges(grid: Grid) -> Ways:
     """
     import shapely
 
-    _, columns = grid.occupied.shape
     cells = np.flatnonzero(~grid.occupied)
-    row, column = np.divmod(cells, columns)
-    centres = np.column_stack([column, row]) + 0.5
+    centres = np.argwhere(~grid.occupied)[:, ::-1] + 0.5
     first, second = np.triu_indices(len(cells), 1)
     edges = shapely.linestrings(np.stack([centres[first], centres[second]], axis=1))
     # Slightly smaller cells, so that an edge may touch a side or a corner.
@@ -101,16 +99,14 @@ def find_polylines(
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return None
-    ends = [problem.start, problem.target]
-    places = [grid.cell_of(*end) for end in ends]
-    if None in places:
+    ends = grid.in_cells(np.array([problem.start, problem.target]))
+    if not np.allclose(ends % 1, 0.5):
         return None
-    cells = [int(np.ravel_multi_index(place, grid.occupied.shape)) for place in places]
-    if not np.allclose([grid.centre(cell) for cell in cells], ends):
-        return None
+    column, row = ends.astype(int).T
     printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
     free = list_edges(grid)
-    first, last = (int(np.searchsorted(free.cells, cell)) for cell in cells)
+    cells = row * grid.occupied.shape[1] + column
+    first, last = map(int, np.searchsorted(free.cells, cells))
     # Longer than the printed number too: the chance of a match is that of numbers nearby.
     reached = _list_reachable_lengths(free, first, printed + NEARBY + half, last, edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))

@@ -10,6 +10,7 @@ Source: Bhatia and Davis (2000), "A better bound on the variance", American Math
 
 import math
 from collections.abc import Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -40,8 +41,7 @@ def read_printed(text: str) -> Printed:
 
 def find_last_place(text: str) -> int:
     """Return the decimal place of a printed number's last digit: 2 for `7.30`, -2 for `1.5e3`."""
-    digits, _, power = text.strip().lower().partition("e")
-    return len(digits.partition(".")[2]) - int(power or 0)
+    return -int(Decimal(text).as_tuple().exponent)
 
 
 def convert_end(end: float | str) -> Fraction | None:

@@ -36,27 +36,25 @@ def build_audit_row(
 
 
 def merge_rows(rows: Iterable[dict]) -> list[dict]:
-    """Merge the rows of each rule that several numbers obey into one, which says how many
-    they are.
+    """Merge the rows of each rule that several numbers obey into one, which says how many they are;
+    rows of numbers that disobey, or that the rule cannot judge, stay.
     """
     by_rule: dict[str, list[dict]] = {}
     for row in rows:
         by_rule.setdefault(row["rule"], []).append(row)
-    return [row for rule, own in by_rule.items() for row in _merge_rows_of_rule(rule, own)]
-
-
-def _merge_rows_of_rule(rule: str, rows: list[dict]) -> list[dict]:
-    """Merge the obeying rows of one rule; rows of numbers that disobey, or that the rule cannot
-    judge, stay.
-    """
-    obeyed = [row for row in rows if row["consistent"] is True]
-    # A single row keeps its own place.
-    if len(obeyed) < 2:
-        return rows
-    items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))
-    count, every = len(obeyed), len(rows)
-    row = build_audit_row(items, f"{count} of {every} numbers", rule, count, every, True)
-    return [*(other for other in rows if other["consistent"] is not True), row]
+    merged = []
+    for rule, own in by_rule.items():
+        obeyed = [row for row in own if row["consistent"] is True]
+        # A single row keeps its own place.
+        if len(obeyed) < 2:
+            merged += own
+            continue
+        merged += [row for row in own if row["consistent"] is not True]
+        items = ", ".join(dict.fromkeys(row["item"] for row in obeyed))
+        count, every = len(obeyed), len(own)
+        place = f"{count} of {every} numbers"
+        merged.append(build_audit_row(items, place, rule, count, every, True))
+    return merged
 
 
 def compare_with_limit(

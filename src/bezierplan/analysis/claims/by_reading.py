@@ -102,13 +102,8 @@ def list_checks(claims: Iterable[Claim], readings: Mapping[str, ClaimTables]) ->
         for (claim, _), own in compared.groupby(["id", "check"], sort=False):
             marks, in_family = own["mark"].to_list(), own["mark_family"].to_list()
             # The first of those that speak most against the claim, in the order of the checks.
-            against = own.iloc[min(range(len(own)), key=lambda row: AGAINST.index(marks[row]))]
-            rows.append(
-                against.to_dict()
-                | {
-                    "reading": name,
-                    "verdict_on_check": verdicts.judge_marks(marks, in_family, modes[claim]),
-                    "holds": f"{marks.count('+')} of {len(marks)}",
-                }
-            )
+            against = own.loc[own["mark"].map(AGAINST.index).idxmin()]
+            verdict = verdicts.judge_marks(marks, in_family, modes[claim])
+            told = {"verdict_on_check": verdict, "holds": f"{marks.count('+')} of {len(marks)}"}
+            rows.append(against.to_dict() | told | {"reading": name})
     return pd.DataFrame(rows, columns=COLUMNS_OF["claims_by_reading"])

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from bezierplan.analysis.metric import METRICS
@@ -27,6 +28,9 @@ from bezierplan.schema.model import (
     is_line,
     is_number,
 )
+
+SIDES = {"lower": -1, "higher": 1, "down": -1, "up": 1, "at_most": -1, "at_least": 1}
+"""A claimed direction -> the sign of the effects that lie there."""
 
 Group = Annotated[
     str | float,
@@ -145,7 +149,12 @@ def refuse_same_group(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
 
 
 class OfRuns(ClaimCheck):
-    """The keys that all checks of runs share."""
+    """The keys that all checks of runs share.
+
+    reference: the cell to whose value an effect is relative.
+    """
+
+    reference: ClassVar[int] = 0
 
     experiment: build_list_type(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
@@ -169,7 +178,7 @@ class OfRuns(ClaimCheck):
         replicates.
         """
         named = {
-            key: convert_to_list(getattr(self, key, None) or [])
+            key: convert_to_list(getattr(self, key))
             for key in ("every", "pool", self.cells_key, "replicate")
             if key
         }
@@ -206,6 +215,20 @@ class OfRuns(ClaimCheck):
         """
         return next(iter(self.event.items())) if self.event else None
 
+    @property
+    def side(self) -> int:
+        """Return the sign of the effects on the claimed side."""
+        return SIDES[self.direction]
+
+    @property
+    def point_statistic(self) -> str:
+        """Return the statistic that represents a cell by one number."""
+        return "mean" if self.statistic in (None, "rank") else self.statistic
+
+    def is_as_claimed(self, effects: np.ndarray, margin: float) -> np.ndarray:
+        """Tell which effects (...) point as claimed and exceed the claimed least effect, if any."""
+        return self.side * effects > self.least
+
 
 class WithMargin(OfRuns):
     """The keys of checks whose effect may be too small to matter."""
@@ -226,8 +249,22 @@ class Comparing(WithMargin):
 
     against: ClassVar[bool] = True
     cells_key: ClassVar[str | None] = "across"
+    reference: ClassVar[int] = 1
 
     across: Column = Field(
         "method", description="the column whose values are the groups; left out: method"
     )
     pool: Columns = Field([], description=POOL)
+
+    # Relative to zero, an effect is not finite: `effects.explain_missing` says so later.
+    @np.errstate(divide="ignore", invalid="ignore")
+    def compute_effect(self, points: np.ndarray, cells: tuple) -> np.ndarray:
+        """Compute a group's value less the other's; if relative, as a share of the other's."""
+        group, other = points[..., 0], points[..., 1]
+        return group / other - 1 if self.relative else group - other
+
+    def compute_gradient(self, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+        """Compute how the effect changes with both values (2,); None if relative to zero."""
+        if not self.relative:
+            return np.array([1.0, -1.0])
+        return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None

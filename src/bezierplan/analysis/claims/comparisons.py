@@ -3,7 +3,7 @@ the same cells.
 """
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
 import numpy as np
@@ -14,7 +14,6 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Contrast
-from bezierplan.analysis.claims.kinds import load_kind
 from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import (
     PrintedTable,
@@ -60,13 +59,13 @@ def _replace_rest(groups: list, rest: list) -> list:
     return list(itertools.chain.from_iterable(parts))
 
 
-def _list_displays(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
-    """List the tables and figure panels among a claim's artefacts that show runs of the check's
+def _list_displays(check: OfRuns, names: Iterable[str], material: Material) -> list[Display]:
+    """List the tables and figure panels of artefacts, given by name, that show runs of the check's
     experiments.
     """
     return [
         part
-        for name in claim.artefacts
+        for name in names
         for part in material.study.artefacts.get(name, [])
         if part.experiment in check.experiments
     ]
@@ -78,7 +77,7 @@ def _list_groups(check: OfRuns, claim: Claim, material: Material) -> list:
     """
     across = check.cells
     groups = []
-    for where in [part.where for part in _list_displays(check, claim, material)] or [{}]:
+    for where in [part.where for part in _list_displays(check, claim.artefacts, material)] or [{}]:
         if across in where:
             groups += convert_to_list(where[across])
         else:
@@ -98,17 +97,14 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     runs = _measure_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = check.cells, check.replicate
-    every, pool = check.every, check.pool
+    column, every, pool = check.cells, check.every, check.pool
     tables = _list_published_tables(check, claim, material)
     of_tables = [key for table in tables for key in table.keys if key in runs]
     keys = list(dict.fromkeys(["experiment", *list_unit_columns(check)[:-1], *of_tables]))
-    runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
+    runs = runs[list(dict.fromkeys([*keys, *_FACTORS, check.replicate, "value"]))]
     if factor := find_mixed_factor(check, runs):
         what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
-    # Published numbers are found by the places of the runs, each once.
-    places = dict(_split(runs[keys].drop_duplicates(), every))
     paired = check.paired
     # Equal units belong together if they share a start or a random workspace.
     if paired is None:
@@ -118,17 +114,17 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     metric_runs = material.results[check.experiments[0]].runs
     # Averaged over the runs of a unit, a boolean is a number like others.
     boolean = (
-        unit == "repeat"
+        check.replicate == "repeat"
         and check.metric in metric_runs
         and pd.api.types.is_bool_dtype(metric_runs[check.metric])
     )
     comparison_list = []
-    for condition, rows in _split(runs, every):
-        unit_tables = {
-            name: _average_units(part, unit, column) for name, part in _split(rows, pool)
-        }
-        conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
-        compared = list(load_kind(check).cells(check, rows))
+    for _, rows in _split(runs, every):
+        unit_tables = {name: _average_units(check, part) for name, part in _split(rows, pool)}
+        # Published numbers are found by the places of the runs, each once.
+        places = _split(rows[keys].drop_duplicates(), pool)
+        conditions = [part.to_dict("records") for _, part in places]
+        compared = list(check.list_cells(rows))
         printed_cells = {
             cell: [
                 find_cell(
@@ -164,7 +160,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=boolean,
                     paired=paired,
-                    note=_note_success_rates(check, rows, column, cells),
+                    note=_note_success_rates(check, rows, cells),
                     conditions=int(pooled),
                 )
             )
@@ -188,10 +184,10 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
     for name in check.experiments:
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
-        runs, problems = material.results[name].runs, material.results[name].problems
+        runs, problems, *_ = material.results[name]
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
-            for part in _list_displays(check, claim, material)[:1]:
+            for part in _list_displays(check, claim.artefacts, material)[:1]:
                 runs = select(runs, part.where)
         else:
             runs = select(runs, conditions)
@@ -213,8 +209,8 @@ def _measure_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFra
             for column in outcomes
             if column not in counting
         }
-        values = values.loc[select(counting.assign(**computed), outcomes).index]
-        values = values.reindex(runs.index)
+        chosen = select(counting.assign(**computed), outcomes)
+        values = values.loc[chosen.index].reindex(runs.index)
         # This includes runs that do not satisfy a condition on an outcome.
         if check.failures == "last":
             values = values.fillna(np.inf)
@@ -229,14 +225,11 @@ def _choose_failure_value(check: OfRuns) -> float:
     """Return the value of a run without one: NaN to drop it, infinite if it is worse than any
     other, or a value for which the event is false.
     """
-    match check.failures:
-        case "last":
-            return np.inf
-        case "count":
-            # Infinitely far on the side of the limit where the event is false.
-            above = check.limit is not None and check.limit[0] in ("above", "at_least")
-            return -np.inf if above else np.inf
-    return np.nan
+    if check.failures == "drop":
+        return np.nan
+    # Infinitely far on the side of the limit where the event is false.
+    above = check.limit is not None and check.limit[0] in ("above", "at_least")
+    return -np.inf if above and check.failures == "count" else np.inf
 
 
 def list_unit_columns(check: OfRuns) -> list[str]:
@@ -264,17 +257,17 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
         yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
 
 
-def _average_units(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
+def _average_units(check: OfRuns, rows: pd.DataFrame) -> pd.DataFrame:
     """Average the values of each unit (row) in each cell (column); a run that counts as failed
     makes its unit fail.
     """
     # A check without groups has one cell, whose name is empty.
-    if column is None:
-        return rows.groupby(unit)["value"].mean().to_frame("")
-    return rows.groupby([unit, column])["value"].mean().unstack(column)
+    if check.cells is None:
+        return rows.groupby(check.replicate)["value"].mean().to_frame("")
+    return rows.groupby([check.replicate, check.cells])["value"].mean().unstack(check.cells)
 
 
-def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
+def _note_success_rates(check: OfRuns, rows: pd.DataFrame, cells: list) -> str:
     """Return a note if two groups are compared on their successful runs but differ in success rate
     (Fisher's exact test); otherwise an empty text.
     """
@@ -284,7 +277,7 @@ def _note_success_rates(check: OfRuns, rows: pd.DataFrame, column: str | None, c
         or not metrics.METRICS[check.metric].feasible_only
     ):
         return ""
-    values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
+    values = [rows.loc[rows[check.cells] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
     from scipy import stats
 
@@ -299,13 +292,15 @@ def _list_published_tables(check: OfRuns, claim: Claim, material: Material) -> l
     """List the published numbers of each table of the check's experiments, the claim's artefacts
     first.
     """
-    tables: list[PrintedTable] = []
-    for name in dict.fromkeys([*claim.artefacts, *material.study.artefacts]):
-        for part in material.study.artefacts.get(name, []):
-            if part.published and part.experiment in check.experiments:
-                published = material.published[PurePath(part.published).stem]
-                numbers = comparison.assign_metrics(published, part.reads)
-                tables.append(
-                    select_metric(len(tables), part.experiment, numbers, check.printed_metric)
-                )
-    return tables
+    names = dict.fromkeys([*claim.artefacts, *material.study.artefacts])
+    return [
+        select_metric(
+            part.experiment,
+            comparison.assign_metrics(
+                material.published[PurePath(part.published).stem], part.reads
+            ),
+            check.printed_metric,
+        )
+        for part in _list_displays(check, names, material)
+        if part.published
+    ]

@@ -11,14 +11,14 @@ resampling says nothing about events that never happened.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.claims.check import OfRuns, PublishedMargin
-from bezierplan.analysis.claims.kinds import load_kind
+from bezierplan.analysis.claims.check import SIDES, OfRuns, PublishedMargin
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, WITHOUT_INTERVAL
 from bezierplan.workspaces.seeds import generator
 
@@ -30,7 +30,6 @@ ENOUGH = 10
 # This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs
 # are counterexamples.
 LEAST_WITHOUT_EXAMPLE = 59
-SIDES = {"lower": -1, "higher": 1, "down": -1, "up": 1, "at_most": -1, "at_least": 1}
 _EVENTS: dict[str, Callable] = {
     "below": np.less,
     "above": np.greater,
@@ -58,7 +57,7 @@ class Terms(NamedTuple):
 
 
 class Contrast(NamedTuple):
-    """The values of the cells of one comparison.
+    """The values of the cells of one comparison; the terms alone if no runs are compared.
 
     terms: the words of the comparison. place: the values of `every` there, by column. cells:
     groups, or values of x in rising order (k).
@@ -71,16 +70,16 @@ class Contrast(NamedTuple):
     of the row. conditions: how many a cell pools.
     """
 
-    terms: Terms
-    place: tuple[tuple[str, Any], ...]
-    cells: tuple
-    strata: dict[str, np.ndarray]
-    printed: np.ndarray
-    paper_units: int | None
-    boolean: bool
-    paired: bool
+    terms: Terms = Terms()
+    place: tuple[tuple[str, Any], ...] = ()
+    cells: tuple = ()
+    strata: Mapping[str, np.ndarray] = MappingProxyType({})
+    printed: np.ndarray = np.full(1, np.nan)
+    paper_units: int | None = None
+    boolean: bool = False
+    paired: bool = False
     note: str = ""
-    conditions: int = 1
+    conditions: int | None = None
 
     @property
     def seed(self) -> str:
@@ -104,11 +103,9 @@ class Contrast(NamedTuple):
         """Return as text, such as `28 of 30, 30 of 30`, how many units of each cell have a value
         that can be averaged; fewer if runs failed.
         """
-        found = np.sum(
-            [np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0
-        )
+        found = zip(*(np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()))
         total = sum(map(len, self.strata.values()))
-        return ", ".join(f"{number} of {total}" for number in found)
+        return ", ".join(f"{sum(counts)} of {total}" for counts in found)
 
 
 class Finding(NamedTuple):
@@ -137,8 +134,7 @@ class Finding(NamedTuple):
 
 
 class MarkedComparison(NamedTuple):
-    """One comparison of terms; `comparison` is None if no runs are compared. primary:
-    False for a secondary check.
+    """One comparison with what was found. primary: False for a secondary check.
 
     parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
     """
@@ -146,27 +142,12 @@ class MarkedComparison(NamedTuple):
     number: int
     check: Any
     primary: bool
-    terms: Terms
-    comparison: Contrast | None
+    comparison: Contrast
     finding: Finding
     mark: str = "?"
     mark_family: str = ""
     p_family: float = math.nan
     parts: tuple[Contrast, ...] = ()
-
-    @property
-    def place(self) -> tuple[tuple[str, Any], ...]:
-        """Return the place of the comparison; empty if no runs are compared."""
-        return self.comparison.place if self.comparison else ()
-
-    @property
-    def counted(self) -> str:
-        """Return the text of `Contrast.counted`, empty if no runs are compared."""
-        return self.comparison.counted if self.comparison else ""
-
-
-# What a claim says about point values. All take (..., k) numbers of cells, so that they work for
-# ours, printed ones and draws.
 
 
 def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
@@ -177,60 +158,6 @@ def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
         return values
     word, limit = check.limit
     return np.where(np.isnan(values), np.nan, _EVENTS[word](values, limit))
-
-
-class Effect(NamedTuple):
-    """The functions by which a kind of test computes an effect from point values of cells; all take
-    the check first.
-
-    of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and
-    names -> how the effect changes with each value (k,), None without a linear approximation.
-    holds: effects (...) and the margin -> whether each is what the claim says. reference: the
-    cell to whose value an effect is relative. statistic: the statistic of a cell if the check names
-    none.
-    """
-
-    of: Callable[[Any, np.ndarray, tuple], np.ndarray]
-    gradient: Callable[[Any, np.ndarray, tuple], np.ndarray | None]
-    holds: Callable[[Any, np.ndarray, float], np.ndarray]
-    reference: int = 1
-    statistic: str = "mean"
-
-
-def _compute_difference(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """Compute the first cell's value less the second's; if relative, as a share of the second's."""
-    group, other = points[..., 0], points[..., 1]
-    return group / other - 1 if check.relative else group - other
-
-
-def _compute_gradient(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    """Compute how the difference of two cells changes with each value (2,); None if relative to
-    zero.
-    """
-    if not check.relative:
-        return np.array([1.0, -1.0])
-    return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None
-
-
-def is_on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Tell which effects (...) point as claimed and exceed the claimed least effect, if any."""
-    return SIDES[check.direction] * effects > check.least
-
-
-# Two cells: a group and the one that it is compared with.
-BETWEEN_GROUPS = Effect(_compute_difference, _compute_gradient, is_on_claimed_side)
-
-
-def compute_effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """Compute the effect (...) of point values (..., k) of the cells."""
-    # Relative to zero, an effect is not finite: `explain_missing` says so later.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return load_kind(check).EFFECT.of(check, points, cells)
-
-
-def is_as_claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Tell which effects (...) are as the claim says, by their values alone."""
-    return load_kind(check).EFFECT.holds(check, effects, margin)
 
 
 def compute_margin(check: OfRuns, comparison: Contrast) -> float:
@@ -246,17 +173,11 @@ def compute_margin(check: OfRuns, comparison: Contrast) -> float:
     published_margin = margin.published
     # Relative effects and those of booleans are shares already.
     if not check.relative and not comparison.boolean:
-        points = compute_points(comparison, choose_statistic(check))
-        published_margin *= abs(float(points[load_kind(check).EFFECT.reference]))
-    printed = compute_effect(check, comparison.printed, comparison.cells)
+        points = compute_points(comparison, check.point_statistic)
+        published_margin *= abs(float(points[check.reference]))
+    printed = check.compute_effect(comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.direction, np.sign(printed)) > 0
     return min(published_margin, float(abs(printed))) if as_claimed else published_margin
-
-
-def choose_statistic(check: OfRuns) -> str:
-    """Return the statistic that represents a cell by one number."""
-    named = check.statistic
-    return load_kind(check).EFFECT.statistic if named in (None, "rank") else named
 
 
 # Values of units, statistics of cells, and their bootstrap.
@@ -303,13 +224,8 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
     """Draw the effect of the check's statistic by bootstrap (DRAWS,), or return the normal
     approximation; NaN with an empty cell.
     """
-    statistic = choose_statistic(check)
-    if (
-        comparison.boolean
-        and statistic == "mean"
-        and not check.relative
-        and len(comparison.cells) == 2
-    ):
+    statistic = check.point_statistic
+    if comparison.boolean and statistic == "mean" and not check.relative:
         # Resampling says nothing about events that never happened (module docstring).
         adjusted = [
             _compute_adjusted_difference(*cells, comparison.paired)
@@ -318,11 +234,11 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.compute_normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
     ours = compute_points(comparison, statistic)
-    gradient = load_kind(check).EFFECT.gradient(check, ours, comparison.cells)
+    gradient = check.compute_gradient(ours, comparison.cells)
     # The normal approximation needs many values in every cell.
     conditions = comparison.list_values(finite=True)
     if gradient is None or any(len(v) <= MOST_RESAMPLED for cells in conditions for v in cells):
-        return compute_effect(check, draw_points(comparison, statistic, name), comparison.cells)
+        return check.compute_effect(draw_points(comparison, statistic, name), comparison.cells)
     variance = 0.0
     for cells in conditions:
         moved = [
@@ -333,7 +249,7 @@ def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
         parts = [np.sum(moved, axis=0)] if comparison.paired else moved
         variance += sum(part.var(ddof=1) / len(part) for part in parts)
     return statistics.compute_normal_draws(
-        float(compute_effect(check, ours, comparison.cells)),
+        float(check.compute_effect(ours, comparison.cells)),
         math.sqrt(variance) / len(comparison.strata),
     )
 
@@ -342,10 +258,8 @@ def _compute_adjusted_difference(
     group: np.ndarray, reference: np.ndarray, paired: bool
 ) -> tuple[float, float]:
     """Compute the difference of the shares of two boolean groups, and its variance, with two units
-    added to each; NaN for an empty group.
+    added to each.
     """
-    if not len(group) or not len(reference):
-        return math.nan, math.nan
     if paired:
         # Agresti and Min: one half for each of the four kinds of pair.
         n = len(group) + 2
@@ -362,14 +276,14 @@ def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Find
     """Measure the effect of two cells, and return it with its draws. The finding has a mark where
     no test follows: there are too few units, or the sentence is about extremes.
     """
-    points = compute_points(comparison, choose_statistic(check))
-    ours = float(compute_effect(check, points, comparison.cells))
+    points = compute_points(comparison, check.point_statistic)
+    ours = float(check.compute_effect(points, comparison.cells))
     n = count_units(comparison)
     if reason := explain_too_few(comparison):
         return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
     margin = compute_margin(check, comparison)
     finding = Finding(ours, "difference", ours, n=n, margin=margin)
-    if choose_statistic(check) in WITHOUT_INTERVAL:
+    if check.point_statistic in WITHOUT_INTERVAL:
         return _judge_by_draws(check, comparison, name, finding), np.empty(0)
     draws = draw_effects(check, comparison, name)
     low, high = compute_interval_of_draws(draws)
@@ -384,9 +298,9 @@ def _judge_by_draws(check: OfRuns, comparison: Contrast, name: str, finding: Fin
     # Extremes depend on the number of runs.
     if size is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
-    draws = draw_points(comparison, choose_statistic(check), name, size)
-    effects = compute_effect(check, draws, comparison.cells)
-    held = np.mean(is_as_claimed(check, effects, finding.margin))
+    draws = draw_points(comparison, check.point_statistic, name, size)
+    effects = check.compute_effect(draws, comparison.cells)
+    held = np.mean(check.is_as_claimed(effects, finding.margin))
     return finding._replace(
         mark=mark_share(held),
         chance_known=finding.n >= ENOUGH * size,

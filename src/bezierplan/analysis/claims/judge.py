@@ -46,11 +46,10 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics
-from bezierplan.analysis.claims import comparisons, effects, sentences, verdicts
+from bezierplan.analysis.claims import comparisons, sentences, verdicts
 from bezierplan.analysis.claims.check import ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.effects import Finding, MarkedComparison, Terms
-from bezierplan.analysis.claims.kinds import load_kind
+from bezierplan.analysis.claims.effects import Contrast, Finding, MarkedComparison
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import (
     apply_variant,
@@ -147,7 +146,7 @@ def _describe_verdict(
         sentences.note_negligible(deciding, verdict, _find_unit(deciding[0].check, material)),
         _write_reason(decisive),
         sentences.note_disagreement(judgements),
-        claim.note or "",
+        claim.note,
     ]
     return finding._asdict() | {
         "verdict": verdict,
@@ -155,7 +154,7 @@ def _describe_verdict(
         "where_it_holds": ""
         if everywhere
         else sentences.describe_where_it_holds(judgements, material.study.labels),
-        "counted": decisive.counted,
+        "counted": decisive.comparison.counted,
         "p_family": decisive.p_family,
         "reason": sentences.join_notes(*reasons),
     }
@@ -178,9 +177,7 @@ def _judge_checks(
                     obstacle = obstacle or str(reason)
                 else:
                     nothing = Finding(reason=str(reason))
-                    judgements.append(
-                        MarkedComparison(number, check, False, Terms(), None, nothing)
-                    )
+                    judgements.append(MarkedComparison(number, check, False, Contrast(), nothing))
     return _mark_comparisons(judgements), obstacle
 
 
@@ -188,30 +185,29 @@ def _judge_check(
     number: int, check: ClaimCheck, claim: Claim, name: str, material: Material
 ) -> list[MarkedComparison]:
     """Judge the comparisons of one check; return them with their findings. Raises Untestable."""
-    kind = load_kind(check)
     if not isinstance(check, OfRuns):
-        judged = [
-            (terms, None, finding) for terms, finding in kind.findings(check, claim, material)
-        ]
+        judged = [(Contrast(terms), finding) for terms, finding in check.judge(claim, material)]
     elif check.timed and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     else:
         judged = [
-            (each.terms, each, kind.find(check, each, f"{name}/{number}/{each.terms.name}"))
+            (each, check.find(each, f"{name}/{number}/{each.terms.name}"))
             for each in comparisons.build_comparisons(check, claim, material)
         ]
     entries = [
-        MarkedComparison(number, check, check.primary, terms, compared, finding)
-        for terms, compared, finding in judged
+        MarkedComparison(number, check, check.primary, compared, finding)
+        for compared, finding in judged
     ]
     return _combine_places(entries) if check.together else entries
 
 
 def _combine_places(findings: list[MarkedComparison]) -> list[MarkedComparison]:
     """Combine the comparisons of each place into one, followed by themselves as secondary ones."""
-    places = dict.fromkeys(each.place for each in findings)
+    by_place: dict[tuple, list[MarkedComparison]] = {}
+    for each in findings:
+        by_place.setdefault(each.comparison.place, []).append(each)
     judged = []
-    for own in ([each for each in findings if each.place == place] for place in places):
+    for own in by_place.values():
         finding, decisive = verdicts.combine_findings([each.finding for each in own])
         parts = tuple(each.comparison for each in own)
         whole = own[decisive]._replace(finding=finding, parts=parts)
@@ -274,15 +270,12 @@ def _judge_printed(entry: MarkedComparison) -> tuple[float, bool | None]:
     if they are not printed.
     """
     parts = entry.parts or (entry.comparison,)
-    if None in parts or any(np.isnan(part.printed).any() for part in parts):
+    if any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    printed = [effects.compute_effect(entry.check, part.printed, part.cells) for part in parts]
-    held = all(
-        bool(effects.is_as_claimed(entry.check, effect, entry.finding.margin)) for effect in printed
-    )
-    return float(
-        effects.compute_effect(entry.check, entry.comparison.printed, entry.comparison.cells)
-    ), held
+    printed = [entry.check.compute_effect(part.printed, part.cells) for part in parts]
+    held = all(entry.check.is_as_claimed(effect, entry.finding.margin) for effect in printed)
+    shown = entry.comparison
+    return float(entry.check.compute_effect(shown.printed, shown.cells)), held
 
 
 # Rows.
@@ -293,18 +286,17 @@ def _write_reason(each: MarkedComparison) -> str:
     comparison.
     """
     unexplained = "too few units to tell" if each.mark == "?" else ""
-    note = each.comparison.note if each.comparison else ""
-    return sentences.join_notes(each.finding.reason or unexplained, note)
+    return sentences.join_notes(each.finding.reason or unexplained, each.comparison.note)
 
 
 def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
     """Build a row of claim_checks.csv, whose columns leave out the rest of what is known."""
-    check, finding = entry.check, entry.finding
+    check, compared = entry.check, entry.comparison
     effect_published, agrees = _judge_printed(entry)
     return (
-        finding._asdict()
+        entry.finding._asdict()
         | entry._asdict()
-        | entry.terms._asdict()
+        | compared.terms._asdict()
         | {
             "check": entry.number,
             "test": check.test,
@@ -318,9 +310,9 @@ def _build_check_row(entry: MarkedComparison, material: Material) -> dict:
             "scale": check.scale,
             "together": len(entry.parts) or None,
             # JSON knows no numbers of numpy.
-            "place": json.dumps(dict(entry.place), default=np.generic.item),
-            "conditions": entry.comparison.conditions if entry.comparison else None,
-            "counted": entry.counted,
+            "place": json.dumps(dict(compared.place), default=np.generic.item),
+            "conditions": compared.conditions,
+            "counted": compared.counted,
             "effect_published": effect_published,
             "published": {True: "holds", False: "fails", None: "not printed"}[agrees],
             "timed": check.timed,

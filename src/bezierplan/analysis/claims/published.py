@@ -15,8 +15,8 @@ from bezierplan.analysis.results import list_key_columns
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 
 
-PrintedCell = dict[str, tuple[tuple[int, int], float, float]]
-"""Printed numbers of one cell: statistic -> (its table and row, value, number of runs)."""
+PrintedCell = dict[str, tuple[float, float]]
+"""Printed numbers of one cell: statistic -> (value, number of runs)."""
 
 
 def average_printed(
@@ -33,11 +33,11 @@ def average_printed(
     """
     size = len(rows_of_conditions[0])
     cells = [cell for cell in itertools.chain(*rows_of_conditions) if cell]
-    rows = [row for cell in cells for row, _, _ in cell.values()]
-    if len(cells) == size * len(rows_of_conditions) and len({*rows}) == len(rows):
+    # Cells that share a row are one object.
+    if len({*map(id, cells)}) == size * len(rows_of_conditions):
         for statistic in _list_statistics(check):
             if all(statistic in cell for cell in cells):
-                values, runs = np.array([cell[statistic][1:] for cell in cells]).T
+                values, runs = np.array([cell[statistic] for cell in cells]).T
                 # Ours are shares, so a count becomes one.
                 numbers = values / runs if statistic == "count" else values
                 known = None if np.isnan(runs).all() else int(np.nanmin(runs))
@@ -67,17 +67,14 @@ class PrintedTable(NamedTuple):
     cells: dict[tuple, PrintedCell]
 
 
-def select_metric(
-    table_number: int, experiment: str, table: pd.DataFrame, metric: str
-) -> PrintedTable:
+def select_metric(experiment: str, table: pd.DataFrame, metric: str) -> PrintedTable:
     """Select the numbers of a metric from a table of published numbers."""
     keys = list_key_columns(table)
     rows = table[table["metric"] == metric].dropna(subset=keys)
     cells: dict[tuple, PrintedCell] = {}
-    for number, row in zip(rows.index, rows.to_dict("records")):
+    for row in rows.to_dict("records"):
         cell = cells.setdefault(tuple(row[key] for key in keys), {})
-        place = (table_number, number)
-        cell[row["statistic"]] = (place, float(row["value"]), float(row["n"]))
+        cell[row["statistic"]] = (float(row["value"]), float(row["n"]))
     return PrintedTable(experiment, keys, cells)
 
 

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.analysis.claims import variants
-from bezierplan.analysis.claims.check import ClaimCheck, OfRuns, PublishedMargin
+from bezierplan.analysis.claims.check import ClaimCheck, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import MarkedComparison
-from bezierplan.analysis.claims.kinds import equal_within, function, share, trend
+from bezierplan.analysis.claims.kinds import function, share, trend
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.naming import Labels, format_amount, format_number, name_column
 from bezierplan.schema.model import convert_to_list, is_number
@@ -47,7 +47,7 @@ class PrintedTerms(NamedTuple):
 
 def name_terms(row: Row, check: ClaimCheck | None, labels: Labels) -> PrintedTerms:
     """Name the groups and the place of a row of claim_checks.csv, None where it is empty."""
-    place = describe_place(json.loads(row["place"] or "{}"), labels)
+    place = describe_place(json.loads(row["place"]), labels)
     if not (check and check.against):
         return PrintedTerms("", "", place)
     groups = (str(_name_group(check, row[end])) for end in ("group", "other"))
@@ -79,15 +79,15 @@ def describe_place(values: Mapping[str, Any], labels: Labels) -> str:
     """Describe values by column as printed: a label, or the value after the name of its column."""
     words = []
     for column, value in values.items():
+        name, each_value = name_column(column, labels), convert_to_list(value)
         if value is True:
-            words.append(name_column(column, labels))
-            continue
-        if value is None:  # the default among variants: all rows
-            words.append(f"{name_column(column, labels)} or not")
-            continue
-        names = [labels.get(str(each), _format_value(each)) for each in convert_to_list(value)]
-        known = all(str(each) in labels for each in convert_to_list(value))
-        words.append(("" if known else f"{name_column(column, labels)} ") + " and ".join(names))
+            words.append(name)
+        elif value is None:  # the default among variants: all rows
+            words.append(f"{name} or not")
+        else:
+            known = all(str(each) in labels for each in each_value)
+            named = [labels.get(str(each), _format_value(each)) for each in each_value]
+            words.append(("" if known else f"{name} ") + " and ".join(named))
     return ", ".join(words)
 
 
@@ -102,13 +102,13 @@ def explain_verdict(row: Row, check: ClaimCheck, labels: Labels, own_criterion: 
     row: from claim_checks.csv, None where it is empty. labels: name -> how it is printed.
     own_criterion: whether the limit is ours because the paper gives no number.
     """
-    template = _TEMPLATES.get(row["test"], _describe_effect)
+    template = _TEMPLATES[row["test"]]
     # The other templates print the effect.
     if row["effect"] is None and template is not _describe_function:
-        template = _describe_effect
+        template = _describe_counts
     notes = [
         "judged on counted work, because seconds differ from machine to machine"
-        if isinstance(check, OfRuns) and check.work
+        if check.work
         else "",
         "the paper gives no number, so this limit is ours" if own_criterion else "",
     ]
@@ -155,13 +155,20 @@ def find_threshold(check: ClaimCheck) -> float:
 
 
 def _describe_claim(row: Row, check: ClaimCheck) -> str:
-    """Say the direction that a claim gives, and in how many comparisons taken together."""
-    together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
-    return f"the claim says {check.direction}{together}"
+    """Say the direction or the difference that a claim gives, and in how many comparisons taken
+    together.
+    """
+    if check.direction:
+        together = f" in all {row['together']:.0f} comparisons" if row["together"] else ""
+        return f"the claim says {check.direction}{together}"
+    if not check.target:
+        return "the claim says that they are alike"
+    amount = _format_amount(abs(check.target), row, check)
+    return f"the claim says by how much: {amount} {_name_side(check.target)}"
 
 
-def _describe_lower(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Describe a comparison of groups that should be lower, or higher, than others."""
+def _describe_groups(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe a comparison of groups that should differ, or be alike."""
     # Of an event, the share of runs in which it happens.
     quantity = _name_quantity(row)
     event = quantity.removeprefix("whether ")
@@ -188,21 +195,6 @@ def _name_side(effect: float) -> str:
     return "lower" if effect < 0 else "higher"
 
 
-def _describe_equal(row: Row, check: equal_within.Options, names: PrintedTerms) -> str:
-    """Describe a comparison of groups that should be alike, or apart by a stated amount."""
-    target = check.target
-    says = (
-        f"by how much: {_format_amount(abs(target), row, check)} {_name_side(target)}"
-        if target
-        else "that they are alike"
-    )
-    return (
-        f"in {_name_quantity(row)}, {names.group} is {_describe_difference(row, check)} "
-        f"{names.other}{_format_interval(row, check)}; the claim says {says}"
-        f"{_describe_margin(row, check)}"
-    )
-
-
 def _describe_trend(row: Row, check: trend.Options, names: PrintedTerms) -> str:
     """Describe a quantity that should rise or fall along another."""
     along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
@@ -226,15 +218,9 @@ def _describe_share(row: Row, check: share.Options, names: PrintedTerms) -> str:
         )
     needed = _NEEDS.get(check.threshold)
     needed = needed or f"in {_format_value(check.direction)} {100 * check.threshold:g} %"
-    low, high = row["low95"], row["high95"]
-    between = (
-        ""
-        if low is None or high is None
-        else f" (95 % interval {100 * low:.3g} to {100 * high:.3g} %)"
-    )
     units = "runs" if check.replicate == "repeat" else f"means by {check.replicate}"
-    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}{between}"
-    return f"{found}; the claim needs it {needed}"
+    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}"
+    return f"{found}{_format_interval(row, check)}; the claim needs it {needed}"
 
 
 def _describe_event(row: Row, check: share.Options) -> str:
@@ -261,19 +247,11 @@ def _describe_function(row: Row, check: function.Options, names: PrintedTerms) -
     )
 
 
-def _describe_effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
-    """Describe any other comparison; without an effect, say how many runs of each group have a
-    value.
-    """
-    if row["effect"] is not None:
-        compared = " ".join(filter(None, [names.group, row["relation"], names.other]))
-        quantity = ", ".join(filter(None, [_name_quantity(row), compared]))
-        return (
-            f"{quantity}: {_format_amount(row['effect'], row, check)}{_format_interval(row, check)}"
-        )
-    counts = (row["counted"] or "").split(", ")
+def _describe_counts(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
+    """Describe a comparison without an effect: how many runs of each group have a value."""
+    counts = row["counted"].split(", ")
     groups = [f" of {group}" for group in (names.group, names.other) if group] or [""]
-    if not row["counted"] or len(counts) != len(groups):
+    if len(counts) != len(groups):
         return f"{_name_quantity(row)} has no value"
     have = " and ".join(f"in {count} runs{group}" for count, group in zip(counts, groups))
     claimed = f"; {_describe_claim(row, check)}" if check.against and check.direction else ""
@@ -281,8 +259,8 @@ def _describe_effect(row: Row, check: ClaimCheck, names: PrintedTerms) -> str:
 
 
 _TEMPLATES = {
-    "lower": _describe_lower,
-    "equal_within": _describe_equal,
+    "lower": _describe_groups,
+    "equal_within": _describe_groups,
     "trend": _describe_trend,
     "share": _describe_share,
     "function": _describe_function,
@@ -303,7 +281,7 @@ def describe_metric(metric: str) -> str:
 
 def _format_unit(row: Row) -> str:
     """Format the unit of a row to follow a number; empty if it has none."""
-    return "" if row["unit"] in (None, "", "-") else f" {row['unit']}"
+    return "" if row["unit"] in (None, "-") else f" {row['unit']}"
 
 
 def _format_amount(value: float, row: Row, check: ClaimCheck) -> str:
@@ -320,7 +298,7 @@ def _format_interval(row: Row, check: ClaimCheck) -> str:
         return ""
     if check.relative and row["effect"] > _TIMES and check.against:
         ends, unit = [1 + end for end in ends], " times"
-    elif check.relative:
+    elif check.relative or isinstance(check, share.Options):
         ends, unit = [100 * end for end in ends], " %"
     return f" (95 % interval {' to '.join(map(format_number, ends))}{unit})"
 
@@ -329,7 +307,7 @@ def _describe_margin(row: Row, check: ClaimCheck) -> str:
     """Describe the limit within which a difference does not count, and who chose it."""
     if row["margin"] is None:
         return ""
-    printed = isinstance(check, OfRuns) and isinstance(check.margin, PublishedMargin)
+    printed = isinstance(check.margin, PublishedMargin)
     origin = "our choice, and not more than the printed difference" if printed else "our choice"
     return (
         f"; differences below {_format_amount(row['margin'], row, check)} do not count ({origin})"
@@ -370,7 +348,7 @@ def note_negligible(deciding: Sequence[MarkedComparison], verdict: str, unit: st
 
 class Entry(NamedTuple):
     """A comparison for its description in words: the values of its factors (`against`, `group`,
-    `in`, columns), and its mark.
+    `what`, columns), and its mark.
     """
 
     factors: Mapping[str, Any]
@@ -382,11 +360,10 @@ def _list_factors(entry: MarkedComparison, deciding: Sequence[MarkedComparison])
     its mark.
     """
     factors: dict[str, Any] = {}
-    if entry.comparison is not None:
-        if entry.check.against and not entry.parts:
-            group, other = (_name_group(entry.check, cell) for cell in entry.comparison.cells)
-            factors |= {"against": other, "group": group}
-        factors |= dict(entry.place)
+    if entry.check.against and not entry.parts:
+        group, other = (_name_group(entry.check, cell) for cell in entry.comparison.cells)
+        factors |= {"against": other, "group": group}
+    factors |= dict(entry.comparison.place)
     if len({_describe_check(other.check) for other in deciding}) > 1:
         factors["what"] = _describe_check(entry.check)
     return Entry(factors, entry.mark_family)
@@ -446,7 +423,7 @@ def _build_key(entry: MarkedComparison) -> tuple:
     """Return what identifies a comparison: its place, and its terms or, if it combines several, how
     many.
     """
-    return entry.place, len(entry.parts) or entry.terms
+    return entry.comparison.place, len(entry.parts) or entry.comparison.terms
 
 
 def describe_split(comparisons: Sequence[Entry], labels: Labels) -> str:
@@ -523,5 +500,5 @@ def _name_value(value: Any, labels: Labels) -> str:
 def _choose_preposition(factor: str) -> str:
     """Choose the word before the values of a factor."""
     words = {"against": "against", "group": "for", "method": "for"}
-    places = ("what", "workspace", "problem", "experiment", "in")
+    places = ("what", "workspace", "problem", "experiment")
     return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

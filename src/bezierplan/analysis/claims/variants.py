@@ -3,7 +3,7 @@
 import itertools
 from typing import Any
 
-from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, Comparing, OfRuns
+from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import convert_to_list
 
@@ -56,7 +56,7 @@ def _replace_in_check(check: ClaimCheck, column: str, pairs: dict) -> ClaimCheck
     """Replace values in a check, wherever it names the column."""
     # A variant changes a key of the check, its groups along the column, or a condition.
     keys = [column] if column in ("metric", "experiment") else []
-    keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
+    keys = GROUP_KEYS if check.against and column == check.cells else keys
     written = check.model_fields_set.intersection(keys)
     changed = {key: _replace_values(getattr(check, key), pairs) for key in written}
     if has_runs(check) and column in check.where:

@@ -80,8 +80,8 @@ def compare(
     variant_of: dict[str, str],
     baselines: list[str],
     name: str,
-    reconstructed: Collection[str] = (),
-    fitted: dict[str, dict] | None = None,
+    reconstructed: Collection[str],
+    fitted: dict[str, dict],
 ) -> pd.DataFrame:
     """Compare the published numbers of a table with ours, in the order of the table; the columns
     are described above.
@@ -99,13 +99,13 @@ def compare(
         beside = [name for name in variants + baselines if name not in methods]
         spec = spec.but(where=spec.where | {"method": methods + beside})
     ours = tables.compute_cells(results, spec, keys, beside)
-    ours = tables.place_cells(ours, spec, list(results.problems))
+    ours = tables.place_cells(ours, spec, results.problems)
     # Before the join, while all ranks of the printed table stand together.
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
     both = _join_published(ours, marked, key_columns, variant_of)
     # The outer join sorts rows by name; the table has an order of its own.
     order = (
-        tables.order_keys(both, spec, list(results.problems))
+        tables.order_keys(both, spec, results.problems)
         .sort_values([*keys, "value", "metric", "statistic"])
         .index
     )
@@ -122,7 +122,7 @@ def compare(
     )
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
-    table["reason"] = find_reasons(both, spec, reconstructed, fitted or {})
+    table["reason"] = find_reasons(both, spec, reconstructed, fitted)
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)

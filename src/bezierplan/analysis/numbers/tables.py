@@ -5,10 +5,11 @@ Rows and columns are values of columns of the runs table, entries of `values`, a
 is needed to distinguish numbers but not named as index or column becomes a level of the columns.
 """
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -16,13 +17,13 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, is_repeated, select
-from bezierplan.analysis.table_kinds import Pivot, TableValue
+from bezierplan.analysis.table_kinds import Pivot
 
 SIGNIFICANT = 2
 """Digits that a number has at least where a paper's table holds ours."""
 
 
-def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+def order_keys(table: pd.DataFrame, spec: Pivot, problems: Iterable[str]) -> pd.DataFrame:
     """Make the key columns ordered categories, so that sorting follows the configuration.
 
     Values are ordered as listed in `where`, problems as in their experiment, all others sorted
@@ -42,15 +43,15 @@ def order_keys(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.
 
 
 class Cell(NamedTuple):
-    """One statistic of an entry of `values` over runs with equal keys.
+    """An entry of `values` over runs with equal keys.
 
-    draws: of random maps; 0 on others. share_feasible, bound, gap: of all
-    these runs, the bound (median) and gap (median of the feasible ones) of the metric's kind of
-    length. least, most: the range of the metric for one run (`least` of an entry is stronger than
-    that of its metric). value: the entry's number. size: how many runs satisfy the entry's
-    `where`, with or without a value; each once. numbers: sorted (n,): the metric of those that have
-    one. by_run: of all that satisfy it, NaN without a value, by problem and repeat. groups: the
-    numbers as one array for each value of the column `within`, None without that key.
+    draws: of random maps; 0 on others. share_feasible, bound, gap: of all these runs, the bound
+    (median) and gap (median of the feasible ones) of the metric's kind of length. least: the least
+    value that one run can have (`least` of an entry is stronger than that of its metric). size: how
+    many runs satisfy the entry's `where`, with or without a value; each once. numbers: sorted (n,):
+    the metric of those that have one. by_run: of all that satisfy it, NaN without a value, by
+    problem and repeat. groups: the numbers as one array for each value of the column `within`, None
+    without that key.
     """
 
     draws: int
@@ -58,11 +59,6 @@ class Cell(NamedTuple):
     bound: float
     gap: float
     least: float
-    most: float
-    value: int
-    metric: str
-    statistic: str
-    decimals: int
     size: int
     numbers: np.ndarray
     by_run: pd.Series
@@ -86,10 +82,11 @@ def compute_cells(
     results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
 ) -> pd.DataFrame:
     """Compute the numbers behind a table: one row for each entry of `values`, group of runs with
-    equal keys, and statistic; its columns are the keys and the fields of a `Cell`.
+    equal keys, and statistic.
 
-    beside: methods outside the table among those of its `where`, which metrics that compare methods
-    leave out.
+    Its columns are the keys, value (the number of the entry), metric, statistic, decimals, most
+    (the largest value that one run can have), and the fields of a `Cell`. beside: methods outside
+    the table among those of its `where`, which metrics that compare methods leave out.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
@@ -118,23 +115,20 @@ def compute_cells(
         bound, least = columns.to_numpy(dtype=float).T
         of_runs = _Measures(selects, selects & counts, values, bound, measure(metric.gap), least)
         for key, group in by_keys:
-            cell = _compute_cell(runs, group.index.to_numpy(), entry, of_runs, spec.within)
-            cell = cell._replace(value=number)
-            rows += [[*key, *cell._replace(statistic=name)] for name in entry.statistics]
+            cell = _compute_cell(runs, group.index.to_numpy(), of_runs, spec.within)
+            rows += [
+                [*key, number, entry.metric, name, entry.decimals, metric.most, *cell]
+                for name in entry.statistics
+            ]
+    columns = [*keys, "value", "metric", "statistic", "decimals", "most", *Cell._fields]
     # Decimals of type object stay integers next to published numbers without runs.
-    return pd.DataFrame(rows, columns=[*keys, *Cell._fields]).astype({"decimals": object})
+    return pd.DataFrame(rows, columns=columns).astype({"decimals": object})
 
 
 def _compute_cell(
-    runs: pd.DataFrame,
-    places: np.ndarray,
-    entry: TableValue,
-    measures: _Measures,
-    within: str | None,
+    runs: pd.DataFrame, places: np.ndarray, measures: _Measures, within: str | None
 ) -> Cell:
-    """Compute the cell of an entry from the runs at some places, without its place and
-    statistic.
-    """
+    """Compute the cell of an entry from the runs at some places."""
     of_entry, counted = (places[mask[places]] for mask in (measures.selects, measures.counts))
     # A run without a value counts nowhere.
     chosen = counted[~np.isnan(measures.values[counted])]
@@ -150,11 +144,6 @@ def _compute_cell(
         gap=_compute_median(measures.gap[places]),
         # Not `min`, which is nan as soon as one run has no least value.
         least=np.fmin.reduce(measures.least[places]),
-        most=metrics.METRICS[entry.metric].most,
-        value=0,
-        metric=entry.metric,
-        statistic="",
-        decimals=entry.decimals,
         size=len(counted),
         numbers=np.sort(numbers),
         # With problem and repeat, by which methods are drawn together (`order_and_level`).
@@ -171,7 +160,7 @@ def _compute_median(values: np.ndarray) -> float:
     return statistics.compute_statistic("median", values[~np.isnan(values)])
 
 
-def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Iterable[str]) -> pd.DataFrame:
     """Add to cells (`compute_cells`) their places in the table, from 0: table_row, table_column."""
     order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
     ordered = order_keys(groups, spec, problems)
@@ -185,13 +174,11 @@ def place_cells(groups: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> p
 
 
 def lay_out(
-    places: pd.DataFrame, values: Sequence, rows: pd.Index, columns: pd.Index, empty: Any = ""
+    places: pd.DataFrame, texts: Sequence, rows: pd.Index, columns: pd.Index
 ) -> pd.DataFrame:
-    """Lay out values as a table with these heads, each at its place (`place_cells`)."""
-    table = np.full((len(rows), len(columns)), empty, dtype=object)
-    table[places["table_row"].to_numpy(dtype=int), places["table_column"].to_numpy(dtype=int)] = (
-        values
-    )
+    """Lay out texts as a table with these heads, each at its place (`place_cells`)."""
+    table = np.full((len(rows), len(columns)), "", dtype=object)
+    table[tuple(places[["table_row", "table_column"]].to_numpy(dtype=int).T)] = texts
     return pd.DataFrame(table, rows, columns)
 
 
@@ -206,9 +193,7 @@ def build_pivot(
     its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
     value, a column beside the values says how many have one (`_add_counts`).
     """
-    table = place_cells(
-        compute_cells(results, spec, spec.key_columns), spec, list(results.problems)
-    )
+    table = place_cells(compute_cells(results, spec, spec.key_columns), spec, results.problems)
     values = [
         statistics.compute_statistic(*each) for each in zip(table["statistic"], table["numbers"])
     ]
@@ -237,39 +222,31 @@ def build_pivot(
     # A table of the paper's form has the paper's columns alone.
     if spec.printed:
         return wide
-    counted, asked = (
-        lay_out(table, numbers, index, columns, math.nan)
-        for numbers in (table["numbers"].map(len), table["size"])
-    )
+    counted = [f"{len(own)} of {size}" for own, size in zip(table["numbers"], table["size"])]
     stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
-    return _add_counts(wide, counted, asked, [": ".join(levels) for levels in stems])
+    return _add_counts(
+        wide, lay_out(table, counted, index, columns), [": ".join(levels) for levels in stems]
+    )
 
 
-def _add_counts(
-    wide: pd.DataFrame, counted: pd.DataFrame, whole: pd.DataFrame, stems: list[str]
-) -> pd.DataFrame:
+def _add_counts(wide: pd.DataFrame, counts: pd.DataFrame, stems: list[str]) -> pd.DataFrame:
     """Add a column such as `20 of 30` beside the values of which some runs have none, for example
     because they failed.
 
-    counted, whole: how many runs have a value, and of how many, at the places of the table. stems:
-    the name of each column without its statistic. Neighbouring columns with equal counts share one
-    column.
+    counts: how many runs have a value, and of how many, at the places of the table. stems: the name
+    of each column without its statistic. Neighbouring columns with equal counts share one column.
     """
-    columns, first = [], 0
-    for row in range(len(stems)):
-        columns.append(wide.iloc[:, row])
-        last = row + 1 == len(stems)
-        if not last and all(
-            table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, whole)
-        ):
-            continue
-        have, of = counted.iloc[:, row], whole.iloc[:, row]
-        if (have < of).any():
-            texts = [f"{n:.0f} of {total:.0f}" if total > 0 else "" for n, total in zip(have, of)]
-            of_what = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
-            name = ": ".join(filter(None, ["runs counted", of_what]))
-            columns.append(pd.Series(texts, wide.index, object, name))
-        first = row + 1
+    columns: list[pd.DataFrame | pd.Series] = []
+    for texts, alike in itertools.groupby(
+        range(len(stems)), lambda place: counts.iloc[:, place].to_list()
+    ):
+        places = [*alike]
+        columns.append(wide.iloc[:, places])
+        if any(len({*text.split(" of ")}) > 1 for text in texts):
+            ends = dict.fromkeys([stems[places[0]], stems[places[-1]]])
+            name = ": ".join(filter(None, ["runs counted", " to ".join(filter(None, ends))]))
+            shown = ["" if text == "0 of 0" else text for text in texts]
+            columns.append(pd.Series(shown, wide.index, object, name))
     return pd.concat(columns, axis=1) if columns else wide
 
 

@@ -1,7 +1,7 @@
 """All studies together: every published number next to ours, and every claim."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pandas as pd
@@ -13,8 +13,8 @@ from bezierplan.analysis.numbers import comparison
 
 def gather(
     comparison_files: Mapping[tuple[str, str], str],
-    column_files: list[str],
-    claims_files: list[str],
+    column_files: Iterable[str],
+    claims_files: Iterable[str],
 ) -> dict[str, pd.DataFrame]:
     """Gather the tables of all studies by name: `numbers`, `claims`, and `order_and_level` of
     columns of numbers.
@@ -56,7 +56,7 @@ def list_numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFra
 
 
 def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Return which rows (n,) count in the denominator.
+    """Return which rows (n,), numbered from 0, count in the denominator.
 
     They are primary and have a range. Left out are numbers that are impossible on any map,
     repetitions of a number in another table, and the last of several counts that add up to the
@@ -78,11 +78,11 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
                 pd.isna(one) or pd.isna(other) or one == other
                 for one, other in zip(earlier[keys], row[keys])
             ):
-                counted[numbers.index.get_loc(index)] = False
+                counted[index] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
     for _, rows in counts.groupby(place, dropna=False, sort=False):
         # The last of them follows from the others.
         if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
-            counted[numbers.index.get_loc(rows.index[-1])] = False
+            counted[rows.index[-1]] = False
     return counted

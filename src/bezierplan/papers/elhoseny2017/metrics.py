@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.analysis.measures import (
+    cells,
     compute_heading_changes,
-    count_free_cells,
     extend_histories,
     sample_path,
 )
@@ -40,18 +40,16 @@ def _cut_into_equal_parts(path: Path) -> tuple[np.ndarray, float]:
     Returns the steps and the spacing, which is close to `BENDING_PART`.
     """
     from bezierplan.geometry import curves
+    from bezierplan.running.simulation.ways import build_way
 
     points = path.points
     if path.curve != "polyline":
-        count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
-        points = sample_path(path, count)
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        points = sample_path(path, BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1)
+    way = build_way(points)
     # Two parts at least, or there would be no change of heading.
-    parts = max(2, round(at[-1] / BENDING_PART))
-    wanted = np.linspace(0.0, at[-1], parts + 1)
-    return np.diff(
-        np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0
-    ), at[-1] / parts
+    parts = max(2, round(way.length / BENDING_PART))
+    places = way.place(np.linspace(0.0, way.length, parts + 1))
+    return np.diff(places, axis=0), way.length / parts
 
 
 @of_path(
@@ -81,17 +79,13 @@ def max_turn(path: Path) -> float:
     step=1.0,
     on=("grid",),
 )
-def straight_blocked(runs: pd.DataFrame, problems: Problems) -> pd.Series:
+def straight_blocked(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell for which runs (n,), on grids, the straight line from start to target touches an
     occupied cell.
     """
-    from bezierplan.workspaces.problem import Path
-
-    blocked = {}
-    for name in runs["problem"].unique():
-        line = Path("polyline", np.array([problems[name].start, problems[name].target]))
-        blocked[name] = count_free_cells(line, problems[name].workspace) is None
-    return runs["problem"].map(blocked)
+    lines = [problems[name].start + problems[name].target for name in runs["problem"]]
+    straight = runs.assign(path_curve="polyline", path_points=lines)
+    return np.isnan(measure_on_maps(cells, straight, problems))
 
 
 def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[float]:
@@ -106,7 +100,7 @@ def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[
 
     count = getattr(cell_length, name)
     lengths = measure_on_maps(
-        lambda path, grid: np.nan if count_free_cells(path, grid) is None else count(path, grid),
+        lambda path, grid: np.nan if np.isnan(cells(path, grid)) else count(path, grid),
         runs,
         problems,
     )

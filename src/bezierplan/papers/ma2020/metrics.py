@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bezierplan.analysis.measures import CORNER, compute_heading_changes, measure_heading_changes
-from bezierplan.analysis.metric import measure_paths, metric, of_path, on_map
+from bezierplan.analysis.metric import measure_on_maps, metric, of_path, on_map
 from bezierplan.workspaces.grid import Grid
 
 if TYPE_CHECKING:
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from shapely import Geometry
 
     from bezierplan.analysis.metric import Problems
+    from bezierplan.geometry.region import Region
     from bezierplan.workspaces.problem import Path
 
 
@@ -98,33 +98,34 @@ def obstacle_clearance(runs: pd.DataFrame, problems: Problems) -> list[float]:
     """Return the least distance (n,) from a path in a grid to its occupied cells; infinite without
     any.
     """
-    return measure_paths(
-        [_prepare_clearance(problems[name].workspace) for name in runs["problem"]], runs
-    )
+    return measure_on_maps(_measure_clearance, runs, problems)
 
 
-@cache
-def _prepare_clearance(grid: Grid) -> Callable[[Path], float]:
-    """Return a measure of free paths: the least distance to the occupied cells of a grid.
+def _measure_clearance(path: Path, grid: Grid) -> float:
+    """Measure the least distance from a free path to the occupied cells of a grid.
 
     This is the checker's clearance, which counts the border, in the same grid padded with free
     cells so that the border is farthest.
     """
     from bezierplan.geometry import checker, curves
+
+    if not grid.occupied.any():
+        return np.inf
+    moved = path._replace(points=(grid.in_cells(path.points) + _find_margin(grid)) * grid.cell)
+    return checker.check(curves.bezier_pieces(moved), _build_padded(grid)).clearance
+
+
+def _find_margin(grid: Grid) -> int:
+    """Find how many free cells round a grid move its border farther away than any cell of it."""
+    return sum(grid.occupied.shape)
+
+
+@cache
+def _build_padded(grid: Grid) -> Region:
+    """Build the blocked region of a grid with free cells round it."""
     from bezierplan.geometry.region import build_region
 
-    margin = sum(grid.occupied.shape)
-    wide = build_region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
-
-    def clearance(path: Path) -> float:
-        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
-        return (
-            checker.check(curves.bezier_pieces(moved), wide).clearance
-            if grid.occupied.any()
-            else np.inf
-        )
-
-    return clearance
+    return build_region(Grid(np.pad(grid.occupied, _find_margin(grid)), grid.cell, ""))
 
 
 @metric(
@@ -135,12 +136,12 @@ def _prepare_clearance(grid: Grid) -> Callable[[Path], float]:
     needs=("safety_distance",),
     on=("grid",),
 )
-def keeps_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def keeps_distance(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Tell which paths (n,) keep their planner's safety distance from the obstacles; NaN where the
     planner has none.
     """
     kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
-    return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
+    return kept.astype(float).where(runs["safety_distance"].notna())
 
 
 @metric(
@@ -150,8 +151,8 @@ def keeps_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     needs=("safety_distance",),
     on=("grid",),
 )
-def length_at_distance(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def length_at_distance(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Return the lengths (n,) of paths that keep their planner's safety distance; NaN of all
     others.
     """
-    return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()
+    return runs["length"].where(keeps_distance(runs, problems) == 1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from bezierplan.analysis.measures import (
     CURVATURE_SAMPLES,
-    count_free_cells,
+    cells,
     extend_histories,
     find_first_generation,
     sample_curvature,
@@ -82,10 +82,7 @@ def occupied_points(path: Path, grid: Grid) -> int:
 def free_polygon(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which runs (n,) have a free path whose control polygon touches no occupied cell."""
     polygons = runs.assign(path_curve=np.where(runs["path_curve"] == "", "", "polyline"))
-    free = measure_on_maps(
-        lambda path, grid: count_free_cells(path, grid) is not None, polygons, problems
-    )
-    return runs["feasible"].to_numpy() & (np.array(free) == 1)
+    return runs["feasible"].to_numpy() & ~np.isnan(measure_on_maps(cells, polygons, problems))
 
 
 @of_path("u", "length of the control polygon", least="bound")

@@ -71,27 +71,21 @@ def best_corridor(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     """Tell which runs (n,) have a free path in the homotopy class of the exact shortest one; NaN
     without circles.
     """
-    best = {
-        problem: compute_homotopy_class(
-            np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace
-        )
-        for problem, own in runs.groupby("problem")
-    }
-    best = runs["problem"].map(best).to_numpy()
-    return np.where(
-        np.isnan(best),
-        np.nan,
-        runs["feasible"] & (measure_on_maps(homotopy, runs, problems) == best),
+    shortest = runs.assign(path_curve="polyline", path_points=runs["bound_path"])
+    best = measure_on_maps(
+        lambda path, workspace: compute_homotopy_class(path.points, workspace), shortest, problems
     )
+    found = np.equal(measure_on_maps(homotopy, runs, problems), best)
+    return np.where(np.isnan(best), np.nan, runs["feasible"] & found)
 
 
 @metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
-def points_evaluated(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
+def points_evaluated(runs: pd.DataFrame, problems: Problems) -> pd.Series:
     """Count the control points (n,) of all paths evaluated, each counted with as many as the run's
     path has; NaN where the run has no path.
     """
     points = runs["path_points"].map(len) / 2
-    return (runs["evaluations"] * points.where(points > 0)).to_numpy()
+    return runs["evaluations"] * points.where(points > 0)
 
 
 register(

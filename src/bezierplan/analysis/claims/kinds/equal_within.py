@@ -37,39 +37,33 @@ class Options(Comparing):
         refuse_same_group(itertools.product(self.groups, self.than), "than")
         return self
 
+    def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
+        """Yield each group paired with each of the others."""
+        for group, other in itertools.product(self.groups, self.than):
+            yield Terms(group, "as", other), [group, other]
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Yield each group paired with each of the others."""
-    for group, other in itertools.product(check.groups, check.than):
-        yield Terms(group, "as", other), [group, other]
+    def is_as_claimed(self, effects: np.ndarray, margin: float) -> np.ndarray:
+        """Return whether the effects, less the target, lie within the margin."""
+        return np.abs(effects - self.target) <= margin
 
+    def find(self, comparison: Contrast, name: str) -> Finding:
+        """Test by two one-sided tests whether two cells' difference, less the target, lies within
+        the margin.
 
-def is_within_margin(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
-    """Return whether the effect, less the target, lies within the margin."""
-    return np.abs(values - check.target) <= margin
-
-
-EFFECT = effects.BETWEEN_GROUPS._replace(holds=is_within_margin)
-
-
-def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Test by two one-sided tests whether two cells' difference, less the target, lies within the
-    margin.
-
-    name: seeds the draws. p is that of lying outside where the effect lies within, and the other
-    way round.
-    """
-    finding, draws = effects.measure_effect(check, comparison, name)
-    if finding.mark:
-        return finding
-    ours, margin = finding.effect, finding.margin
-    toward = 1 if bool(is_within_margin(check, ours, margin)) else -1
-    beyond = draws - check.target
-    if math.isnan(finding.low95):
-        p = math.nan
-    elif toward > 0:
-        p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
-    else:
-        inside = beyond <= margin if ours > check.target else beyond >= -margin
-        p = min(1.0, 2 * float(np.mean(inside)))
-    return finding._replace(p=p, toward=toward, reason=effects.explain_missing(ours))
+        name: seeds the draws. p is that of lying outside where the effect lies within, and the
+        other way round.
+        """
+        finding, draws = effects.measure_effect(self, comparison, name)
+        if finding.mark:
+            return finding
+        ours, margin = finding.effect, finding.margin
+        toward = 1 if self.is_as_claimed(ours, margin) else -1
+        beyond = draws - self.target
+        if math.isnan(finding.low95):
+            p = math.nan
+        elif toward > 0:
+            p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
+        else:
+            inside = beyond <= margin if ours > self.target else beyond >= -margin
+            p = min(1.0, 2 * float(np.mean(inside)))
+        return finding._replace(p=p, toward=toward, reason=effects.explain_missing(ours))

@@ -50,23 +50,23 @@ class Options(ClaimCheck):
         {}, description="column of the runs table → value or list of values", min_length=1
     )
 
+    def judge(self, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
+        """Call the study's function that a check names, and return its finding.
 
-def findings(check: Options, claim: Claim, material: Material) -> list[tuple[Terms, Finding]]:
-    """Call the study's function that a check names, and return its finding. Raises Untestable if
-    the experiment was not run, Fault if there is no function of that name.
-    """
-    for experiment in check.experiments:
-        if experiment not in material.results:
-            raise Untestable(f"the experiment {experiment} was not run")
-    if check.name not in material.functions:
-        raise Fault(
-            f"claim {claim.id}: function {check.name}: "
-            f"unknown{describe_known(check.name, material.functions)}"
+        Raises Untestable if the experiment was not run, Fault if there is no function of that name.
+        """
+        for experiment in self.experiments:
+            if experiment not in material.results:
+                raise Untestable(f"the experiment {experiment} was not run")
+        if self.name not in material.functions:
+            raise Fault(
+                f"claim {claim.id}: function {self.name}: "
+                f"unknown{describe_known(self.name, material.functions)}"
+            )
+        function = material.functions[self.name]
+        mark, effect, interval, n = function(
+            self, material.results, material.published, **self.arguments
         )
-    function = material.functions[check.name]
-    mark, effect, interval, n = function(
-        check, material.results, material.published, **check.arguments
-    )
-    low, high = interval or (math.nan, math.nan)
-    finding = Finding(effect, check.effect, effect, low, high, n, mark=mark)
-    return [(Terms(check.name), finding)]
+        low, high = interval or (math.nan, math.nan)
+        finding = Finding(effect, self.effect, effect, low, high, n, mark=mark)
+        return [(Terms(self.name), finding)]

@@ -46,8 +46,6 @@ from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_l
 if TYPE_CHECKING:
     import pandas as pd
 
-EFFECT = effects.BETWEEN_GROUPS
-
 
 class Options(Comparing):
     paired: Flag = Field(
@@ -105,66 +103,66 @@ class Options(Comparing):
         of_tiers = [itertools.product(*both) for both in itertools.pairwise(tiers)]
         return [*(self.pairs or []), *itertools.chain.from_iterable(of_tiers)]
 
+    def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
+        """Yield each pair: as written, or each group with each of the others, or of the next
+        tier.
+        """
+        for group, other in self.compared:
+            yield Terms(group, f"{self.direction} than", other), [group, other]
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Yield each pair: as written, or each group with each of the others, or of the next tier."""
-    for group, other in check.compared:
-        yield Terms(group, f"{check.direction} than", other), [group, other]
-
-
-def find(check: OfRuns, comparison: Contrast, name: str) -> Finding:
-    """Test whether the first cell is lower (higher) than the second. name: seeds the draws."""
-    finding, draws = effects.measure_effect(check, comparison, name)
-    ours, n, margin = finding.effect, finding.n, finding.margin
-    low, high = finding.low95, finding.high95
-    if finding.mark:
-        # Below the margin the sentence is open, however often it holds.
-        return finding if abs(ours) >= margin else finding._replace(mark="?")
-    side, least = effects.SIDES[check.direction], check.least
-    toward = np.sign(side * ours - least)
-    # A claimed least effect takes the place of the margin.
-    if not least and abs(ours) < margin:
-        toward = 0
-    (group, reference), *others = comparison.list_values()
-    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
-    named = check.statistic
-    # The tests below are for one condition, and for ranks, means or unshifted booleans.
-    if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
-        p = effects.compute_p(side * draws - least)
-    elif comparison.boolean:
-        p = _compute_p_of_booleans(group, reference, comparison.paired)
-    elif named == "mean":
-        ((group, reference),) = comparison.list_values(finite=True)
-        p = _compute_p_of_means(*_shift_other(check, group, reference), comparison.paired)
-    else:
-        p, ranked = compare_ranks(*_shift_other(check, group, reference), comparison.paired)
-        # The means must differ in the direction of the ranks, unless some values have no mean.
-        toward = side * ranked if infinite or toward == side * ranked else 0
-    # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
-    if not (math.isfinite(ours) or infinite):
-        p = math.nan
-    size_name, size = _compute_effect_size(check, comparison, side, ours)
-    reason = effects.explain_missing(p) or (
-        "" if toward else effects.explain_no_difference(low, high, n)
-    )
-    negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
-    finding = finding._replace(
-        effect_size_name=size_name,
-        effect_size=size,
-        p=p,
-        # Without an effect this is nan, which `int` refuses.
-        toward=int(np.nan_to_num(toward)),
-        negligible=negligible,
-        reason=reason,
-    )
-    if not ours or not _is_constant(comparison):
-        return finding
-    # Nothing varies by chance between two constants that differ: the mark stays, without p.
-    return finding._replace(
-        mark=verdicts.choose_mark(finding, p),
-        p=math.nan,
-        reason=reason or "both are constant, so there is no p",
-    )
+    def find(self, comparison: Contrast, name: str) -> Finding:
+        """Test whether the first cell is lower (higher) than the second. name: seeds the draws."""
+        finding, draws = effects.measure_effect(self, comparison, name)
+        ours, n, margin = finding.effect, finding.n, finding.margin
+        low, high = finding.low95, finding.high95
+        if finding.mark:
+            # Below the margin the sentence is open, however often it holds.
+            return finding if abs(ours) >= margin else finding._replace(mark="?")
+        side, least = self.side, self.least
+        toward = np.sign(side * ours - least)
+        # A claimed least effect takes the place of the margin.
+        if not least and abs(ours) < margin:
+            toward = 0
+        (group, reference), *others = comparison.list_values()
+        infinite = any(np.isinf(each).any() for each in comparison.strata.values())
+        named = self.statistic
+        # The tests below are for one condition, and for ranks, means or unshifted booleans.
+        if others or named not in ("rank", "mean") or (comparison.boolean and least):
+            p = effects.compute_p(side * draws - least)
+        elif comparison.boolean:
+            p = _compute_p_of_booleans(group, reference, comparison.paired)
+        elif named == "mean":
+            ((group, reference),) = comparison.list_values(finite=True)
+            p = _compute_p_of_means(*_shift_other(self, group, reference), comparison.paired)
+        else:
+            p, ranked = compare_ranks(*_shift_other(self, group, reference), comparison.paired)
+            # The means must differ in the direction of the ranks, unless some values have no mean.
+            toward = side * ranked if infinite or toward == side * ranked else 0
+        # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
+        if not (math.isfinite(ours) or infinite):
+            p = math.nan
+        size_name, size = _compute_effect_size(self, comparison, ours)
+        reason = effects.explain_missing(p) or (
+            "" if toward else effects.explain_no_difference(low, high, n)
+        )
+        negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
+        finding = finding._replace(
+            effect_size_name=size_name,
+            effect_size=size,
+            p=p,
+            # Without an effect this is nan, which `int` refuses.
+            toward=int(np.nan_to_num(toward)),
+            negligible=negligible,
+            reason=reason,
+        )
+        if not ours or not _is_constant(comparison):
+            return finding
+        # Nothing varies by chance between two constants that differ: the mark stays, without p.
+        return finding._replace(
+            mark=verdicts.choose_mark(finding, p),
+            p=math.nan,
+            reason=reason or "both are constant, so there is no p",
+        )
 
 
 def _is_constant(comparison: Contrast) -> bool:
@@ -206,7 +204,7 @@ def _shift_other(
     # Ranks need the order alone.
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
-    move = effects.SIDES[check.direction] * check.least
+    move = check.side * check.least
     return group, reference * (1 + move) if check.relative else reference + move
 
 
@@ -225,9 +223,7 @@ def _count_contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _compute_effect_size(
-    check: OfRuns, comparison: Contrast, side: int, ours: float
-) -> tuple[str, float]:
+def _compute_effect_size(check: OfRuns, comparison: Contrast, ours: float) -> tuple[str, float]:
     """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
     the claimed direction; or the difference itself.
     """
@@ -242,10 +238,10 @@ def _compute_effect_size(
         with np.errstate(divide="ignore", invalid="ignore"):
             return "odds ratio", float(odds[0] / odds[1])
     # Pairs of values say nothing about a spread or an extreme.
-    if effects.choose_statistic(check) not in ("mean", "median"):
+    if check.point_statistic not in ("mean", "median"):
         return "difference", ours
     if comparison.paired:
         won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]
     else:
         won = [compute_a12(group, other) for group, other in pairs]
-    return "A12", float(np.mean(won)) if side > 0 else 1 - float(np.mean(won))
+    return "A12", float(np.mean(won)) if check.side > 0 else 1 - float(np.mean(won))

@@ -17,7 +17,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
-from bezierplan.analysis.claims.effects import Contrast, Effect, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import Metric, Model, Number, build_error, build_value_type, is_number
@@ -84,71 +84,62 @@ class Options(OfRuns):
             )
         return self
 
+    def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
+        """Yield one cell, that of all runs."""
+        event = " ".join(map(str, self.limit or ()))
+        yield Terms(event, " ".join(filter(None, ["in", self.direction])), self.threshold), [""]
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Yield one cell, that of all runs."""
-    event = " ".join(map(str, check.limit or ()))
-    yield Terms(event, " ".join(filter(None, ["in", check.direction])), check.threshold), [""]
+    def compute_effect(self, points: np.ndarray, cells: tuple) -> np.ndarray:
+        """Return the share itself."""
+        return points[..., 0]
 
+    def is_as_claimed(self, effects: np.ndarray, margin: float) -> np.ndarray:
+        """Return whether the share is on the claimed side of the threshold."""
+        match self.threshold:
+            case "all" | "as printed":
+                return effects == 1
+            case "none":
+                return effects == 0
+            case "some":
+                return effects > 0
+        return self.side * (effects - self.threshold) >= 0
 
-def is_claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
-    """Return whether the share is on the claimed side of the threshold."""
-    match check.threshold:
-        case "all" | "as printed":
-            return values == 1
-        case "none":
-            return values == 0
-        case "some":
-            return values > 0
-    return effects.SIDES[check.direction] * (values - check.threshold) >= 0
+    def find(self, comparison: Contrast, name: str) -> Finding:
+        """Test the share of units in which the event happens. Raises ValueError for values other
+        than true and false.
+        """
+        from scipy import stats
 
-
-EFFECT = Effect(
-    lambda check, points, cells: points[..., 0],
-    lambda check, ours, cells: np.ones(1),
-    is_claimed,
-    reference=0,
-    statistic="share",
-)
-
-
-def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Test the share of units in which the event happens. Raises ValueError for values other than
-    true and false.
-    """
-    from scipy import stats
-
-    happened = np.concatenate([cell for (cell,) in comparison.list_values()])
-    n, k = len(happened), int(happened.sum())
-    if not n:
-        return Finding(mark="?", reason="no run counts")
-    if not np.isin(happened, (0.0, 1.0)).all():
-        raise ValueError(
-            f"{name}: {check.metric} has values other than true and false; its check needs an event"
+        happened = np.concatenate([cell for (cell,) in comparison.list_values()])
+        n, k = len(happened), int(happened.sum())
+        if not n:
+            return Finding(mark="?", reason="no run counts")
+        if not np.isin(happened, (0.0, 1.0)).all():
+            raise ValueError(
+                f"{name}: {self.metric} has values other than true and false; its check needs an "
+                "event"
+            )
+        finding = Finding(k / n, "share", k / n, n=n)
+        # The sentence is about these runs alone, so it holds or does not: nothing is tested.
+        if self.pick:
+            return finding._replace(
+                mark="+" if self.is_as_claimed(finding.effect, math.nan) else "-"
+            )
+        exact = stats.binomtest(k, n).proportion_ci(method="exact")
+        finding = finding._replace(low95=float(exact.low), high95=float(exact.high))
+        if isinstance(self.threshold, str):
+            return _judge_by_example(self, finding, comparison.paper_units)
+        if n < LEAST_RUNS:
+            return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
+        threshold, side = self.threshold, self.side
+        if len(comparison.strata) >= LEAST_RUNS:
+            return _test_over_conditions(finding, comparison, threshold, side)
+        # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
+        p = min(
+            1.0,
+            2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))),
         )
-    finding = Finding(k / n, "share", k / n, n=n)
-    # The sentence is about these runs alone, so it holds or does not: nothing is tested.
-    if check.pick:
-        return finding._replace(mark="+" if _is_claimed_by(check, finding) else "-")
-    exact = stats.binomtest(k, n).proportion_ci(method="exact")
-    finding = finding._replace(low95=float(exact.low), high95=float(exact.high))
-    if isinstance(check.threshold, str):
-        return _judge_by_example(check, finding, comparison.paper_units)
-    if n < LEAST_RUNS:
-        return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
-    threshold, side = check.threshold, effects.SIDES[check.direction]
-    if len(comparison.strata) >= LEAST_RUNS:
-        return _test_over_conditions(finding, comparison, threshold, side)
-    # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
-    p = min(
-        1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold)))
-    )
-    return finding._replace(p=p, toward=int(side * np.sign(k / n - threshold)))
-
-
-def _is_claimed_by(check: Options, finding: Finding) -> bool:
-    """Return whether the share of a finding is on the claimed side of the threshold."""
-    return bool(is_claimed(check, np.array(finding.effect), math.nan))
+        return finding._replace(p=p, toward=int(side * np.sign(k / n - threshold)))
 
 
 def _judge_by_example(check: Options, finding: Finding, paper_units: int | None) -> Finding:
@@ -166,7 +157,7 @@ def _judge_by_example(check: Options, finding: Finding, paper_units: int | None)
         mark = "+" if low > effects.ALPHA else "-" if high < effects.ALPHA else "?"
         reason = f"the chance of {paper_units} of {paper_units} is {chance:.2g}"
         return finding._replace(mark=mark, reason=reason)
-    holds = _is_claimed_by(check, finding)
+    holds = bool(check.is_as_claimed(finding.effect, math.nan))
     if holds == (check.threshold == "some") or finding.n >= effects.LEAST_WITHOUT_EXAMPLE:
         return finding._replace(mark="+" if holds else "-")
     return finding._replace(mark="?", reason=f"fewer than {effects.LEAST_WITHOUT_EXAMPLE} runs")

@@ -8,7 +8,7 @@ each condition, a bootstrap does.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ from pydantic import Field
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import WORK, WithMargin
-from bezierplan.analysis.claims.effects import Contrast, Effect, Finding, Terms
+from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Metric, NumberColumn
@@ -25,6 +25,10 @@ from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+# Decimals of a slope as a share of the steepest.
+_DIGITS = 12
 
 
 class Options(WithMargin):
@@ -37,76 +41,67 @@ class Options(WithMargin):
     )
     work: Metric = Field(None, description=WORK)
 
+    def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
+        """Yield one comparison of all values of x, rising."""
+        yield Terms(self.x, self.direction), sorted(rows[self.x].dropna().unique())
 
-def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
-    """Yield one comparison of all values of x, rising."""
-    yield Terms(check.x, check.direction), sorted(rows[check.x].dropna().unique())
+    # Relative to zero, an effect is not finite: `effects.explain_missing` says so later.
+    @np.errstate(divide="ignore", invalid="ignore")
+    def compute_effect(self, points: np.ndarray, cells: tuple) -> np.ndarray:
+        """Compute the change from the lowest x to the highest; if relative, as a share of the value
+        at the lowest.
+        """
+        change = points @ _compute_weights(cells)
+        return change / points[..., 0] if self.relative else change
 
+    def compute_gradient(self, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+        """Compute how the change depends on the value at each x (k,); None if relative to zero."""
+        reference = ours[0] if self.relative else 1.0
+        return _compute_weights(cells) / reference if reference else None
 
-# Decimals of a slope as a share of the steepest.
-_DIGITS = 12
-
-
-def _compute_weights(x: np.ndarray) -> np.ndarray:
-    """Compute the weights (k,) of values over x (k,) that give least-squares slope times range of
-    x; NaN for a single x.
-    """
-    from_mean = x - x.mean()
-    return from_mean / (from_mean**2).sum() * np.ptp(x)
-
-
-def _compute_change(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """Compute the change from the lowest x to the highest; if relative, as a share of the value at
-    the lowest.
-    """
-    change = points @ _compute_weights(np.array(cells, dtype=float))
-    return change / points[..., 0] if check.relative else change
-
-
-def _compute_gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    """Compute how the change depends on the value at each x (k,); None if relative to zero."""
-    reference = ours[0] if check.relative else 1.0
-    return _compute_weights(np.array(cells, dtype=float)) / reference if reference else None
-
-
-EFFECT = Effect(_compute_change, _compute_gradient, effects.is_on_claimed_side, reference=0)
-
-
-def find(check: Options, comparison: Contrast, name: str) -> Finding:
-    """Test whether a metric changes with x as claimed. name: seeds the draws."""
-    x = np.array(comparison.cells, dtype=float)
-    (stratum,) = comparison.strata.values()
-    slopes = _compute_slopes(x, stratum)
-    n, statistic = len(slopes), effects.choose_statistic(check)
-    if n < LEAST_RUNS:
-        reason = f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}"
-        return Finding(n=n, mark="?", reason=reason)
-    # A unit counts wherever it has a value, even if not at every x.
-    comparison = comparison._replace(paired=False)
-    ours = effects.compute_points(comparison, statistic)
-    if statistic == "mean":
-        slope = float(slopes.mean())
-        reference = ours[0] if check.relative else 1.0
-        changes = slopes * np.ptp(x) / (reference or math.nan)
-        change = float(changes.mean())
-        if n > MOST_RESAMPLED:
-            draws = statistics.compute_normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
+    def find(self, comparison: Contrast, name: str) -> Finding:
+        """Test whether a metric changes with x as claimed. name: seeds the draws."""
+        x = np.array(comparison.cells, dtype=float)
+        (stratum,) = comparison.strata.values()
+        slopes = _compute_slopes(x, stratum)
+        n, statistic = len(slopes), self.point_statistic
+        if n < LEAST_RUNS:
+            reason = f"fewer than {LEAST_RUNS} units with at least 3 values of {self.x}"
+            return Finding(n=n, mark="?", reason=reason)
+        # A unit counts wherever it has a value, even if not at every x.
+        comparison = comparison._replace(paired=False)
+        ours = effects.compute_points(comparison, statistic)
+        if statistic == "mean":
+            slope = float(slopes.mean())
+            reference = ours[0] if self.relative else 1.0
+            changes = slopes * np.ptp(x) / (reference or math.nan)
+            change = float(changes.mean())
+            if n > MOST_RESAMPLED:
+                draws = statistics.compute_normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
+            else:
+                draws = statistics.resample("mean", changes, n, generator(name))
+            p = compute_p_of_signed_ranks(slopes)
         else:
-            draws = statistics.resample("mean", changes, n, generator(name))
-        p = compute_p_of_signed_ranks(slopes)
-    else:
-        slope = float(_compute_weights(x) @ ours / np.ptp(x))
-        change = float(effects.compute_effect(check, ours, comparison.cells))
-        draws = effects.draw_effects(check, comparison, name)
-        p = effects.compute_p(draws)
-    low, high = effects.compute_interval_of_draws(draws)
-    margin = effects.compute_margin(check, comparison)
-    toward = int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change)))
-    toward = 0 if abs(change) < margin else toward
-    negligible = effects.is_negligible(low, high, margin, n)
-    finding = Finding(change, "slope", slope, low, high, n, p, toward, margin, negligible)
-    reason = effects.explain_missing(change) or effects.explain_no_difference(low, high, n)
-    return finding._replace(reason=reason)
+            slope = float(_compute_weights(x) @ ours / np.ptp(x))
+            change = float(self.compute_effect(ours, comparison.cells))
+            draws = effects.draw_effects(self, comparison, name)
+            p = effects.compute_p(draws)
+        low, high = effects.compute_interval_of_draws(draws)
+        margin = effects.compute_margin(self, comparison)
+        toward = int(np.sign(self.side * np.nan_to_num(change)))
+        toward = 0 if abs(change) < margin else toward
+        negligible = effects.is_negligible(low, high, margin, n)
+        finding = Finding(change, "slope", slope, low, high, n, p, toward, margin, negligible)
+        reason = effects.explain_missing(change) or effects.explain_no_difference(low, high, n)
+        return finding._replace(reason=reason)
+
+
+def _compute_weights(x: Sequence[float]) -> np.ndarray:
+    """Compute the weights (k,) of values over x (k) that give least-squares slope times range of x;
+    NaN for a single x.
+    """
+    from_mean = np.array(x, dtype=float) - np.mean(x)
+    return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
 def _compute_slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
@@ -120,5 +115,5 @@ def _compute_slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
         there = np.isfinite(values)
         rises = values[there] - values[there][0]
         slopes.append((_compute_weights(x[there]) * rises).sum() / np.ptp(x[there]))
-    steepest = np.abs(slopes).max(initial=0.0)
-    return np.round(slopes / steepest, _DIGITS) * steepest if steepest > 0 else np.array(slopes)
+    steepest = np.abs(slopes).max(initial=0.0) or 1.0
+    return np.round(np.divide(slopes, steepest), _DIGITS) * steepest

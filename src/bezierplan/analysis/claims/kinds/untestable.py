@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 class Options(ClaimCheck):
     reason: Line = Field(description="why nothing here can test it, one line")
 
-
-def findings(check: Options, claim: Claim, material: Material) -> NoReturn:
-    """Refuse the test: raise Untestable with the reason."""
-    raise Untestable(check.reason)
+    def judge(self, claim: Claim, material: Material) -> NoReturn:
+        """Refuse the test: raise Untestable with the reason."""
+        raise Untestable(self.reason)
