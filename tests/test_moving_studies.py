@@ -248,7 +248,7 @@ def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
 def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, end, feasible):
     around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
-    plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
+    plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
     row, _ = drives.judge_drive(ride, True, *room)
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)

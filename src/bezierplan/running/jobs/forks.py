@@ -74,11 +74,6 @@ class Forks:
         self._starting, self._control = threading.Lock(), None
         self._process: subprocess.Popen | None = None
 
-    @property
-    def process(self) -> int | None:
-        """Return the number of the process that is forked; None before the first."""
-        return self._process and self._process.pid
-
     def start(self) -> None:
         """Start the process that is forked, unless it runs. It imports modules while Snakemake has
         other work.

@@ -9,7 +9,6 @@ import sys
 import time
 
 PR_SET_PDEATHSIG = 1
-PR_SET_CHILD_SUBREAPER = 36
 
 UNDER_WAY = logging.getLogger("bezierplan.under_way")
 """Gets the time limit and the name of each run that a job begins; `forks` listens."""
@@ -36,14 +35,6 @@ def end_with_parent() -> None:
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-
-
-def adopt_descendants() -> None:
-    """Have the kernel make this process the parent of its descendants that lose their own, so that
-    it can wait for them (Linux only: elsewhere `measure_cpu_time` misses them).
-    """
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
 
 
 def measure_cpu_time() -> float:

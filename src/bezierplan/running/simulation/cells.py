@@ -92,7 +92,7 @@ def find_blocked_length(grid: Grid, way: Way, s: float) -> float:
     """Return the length along a way, from its beginning, at which it first enters an occupied cell
     after `s`; infinite if never.
     """
-    points = way.part(s, way.length)
+    points, _ = ways.cut(*way, s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))
     if math.isinf(collision_at):
         return math.inf
