@@ -95,8 +95,12 @@ def written(folder, old="", new=""):
     return home
 
 
+def build(study):
+    return problems.build_all(build_problems_job(study, "drives", "smoke"), study.folder)
+
+
 def chunk(study):
-    made, found = problems.build_all(build_problems_job(study, "drives", "smoke"), study.folder)
+    made, found = build(study)
     return execution.run_chunk(made, build_chunk(study, "drives", "mine", "smoke", 0), found)
 
 
@@ -110,9 +114,7 @@ def driven(tmp_path_factory):
 @pytest.fixture(scope="module")
 def room(driven):
     """The problem of the drives, and its world."""
-    made, found = problems.build_all(
-        build_problems_job(driven[0], "drives", "smoke"), driven[0].folder
-    )
+    made, found = build(driven[0])
     return made["across"], found["across"]
 
 
@@ -180,11 +182,9 @@ def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
 
 
 def test_files_of_problems_keep_the_world(driven, tmp_path):
-    study, _ = driven
-    described = build_problems_job(study, "drives", "smoke")
-    made, found = problems.build_all(described, study.folder)
+    made, found = build(driven[0])
     file = str(tmp_path / "drives.parquet")
-    problems.write(made, described.homes, file, found)
+    problems.write(made, {"across": "room"}, file, found)
     before, moving = problems.read(file)
     assert moving["across"].workspace(3).occupied[2, 3]
     assert not before["across"].workspace.occupied[2, 3]
@@ -244,13 +244,16 @@ def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
     assert "\n" not in str(fault.value)
 
 
+def a_row(room, points, times):
+    """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
+    motion = Motion(np.array(points), np.array(times, dtype=float))
+    ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 1)])
+    return drives.judge_drive(ride, True, *room)[0]
+
+
 @pytest.mark.parametrize(("end", "feasible"), [((6.5, 2.5), True), ((6.0, 2.5), False)])
 def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, end, feasible):
-    around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
-    times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
-    plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 1)
-    ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = drives.judge_drive(ride, True, *room)
+    row = a_row(room, [(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end], [0.0, 2.0, 8.0, 10.0])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -261,21 +264,10 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, e
 def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     room, monkeypatch, clearance, least, steps
 ):
-    points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
-    ride = Ride(
-        Motion(points, np.arange(4.0)), True, 0.0, [DrivePlan(0.0, None, 10.0, 0.0, 0.0, 1)]
-    )
     verdict = drives.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(drives.motion_check, "check", lambda motion, world: verdict)
-    row, _ = drives.judge_drive(ride, True, *room)
+    row = a_row(room, [(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)], range(4))
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
-
-
-def a_row(room, points, times):
-    """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
-    motion = Motion(np.array(points), np.array(times))
-    ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)])
-    return drives.judge_drive(ride, True, *room)[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.

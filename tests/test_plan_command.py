@@ -34,14 +34,12 @@ def plan(problem, rng):
 """
 
 
-def planned(capsys, *words, status=0):
-    """What is printed, by name, and the last line of a failure."""
-    with pytest.raises(SystemExit) if status else contextlib.nullcontext() as end:
+def planned(capsys, *words, fails=False):
+    """What is printed, by name, and the line of a failure, with which Python ends with status 1."""
+    with pytest.raises(SystemExit) if fails else contextlib.nullcontext() as end:
         main(["plan", *map(str, words)])
-    assert not end or end.value.code == status
-    printed = capsys.readouterr()
-    lines = {line[:16].strip(): line[16:] for line in printed.out.splitlines()}
-    return lines | {"failure": printed.err.removesuffix("\n")}
+    lines = {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
+    return lines | {"failure": end and end.value.code}
 
 
 def refused(capsys, *words):
@@ -90,9 +88,7 @@ def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
     problem = bp.Problem("", bp.read_map(GAPS, cell=cell), (2.0, 10.0), (18.0, 10.0))
     answer = bp.plan(problem, **arguments)
     answer.save(tmp_path / "function.csv")
-    lines = planned(
-        capsys, GAPS, *ENDS, *words, "--out", str(command), status=int(not answer.feasible)
-    )
+    lines = planned(capsys, GAPS, *ENDS, *words, "--out", command, fails=not answer.feasible)
     assert command.read_bytes() == (tmp_path / "function.csv").read_bytes()
     settings = ", ".join(f"{name} {value}" for name, value in answer.settings.items())
     assert lines["settings"] == settings or "none"
@@ -169,7 +165,7 @@ def test_a_path_of_no_length_is_written_too(capsys, tmp_path, suffix):
 
 def test_a_path_that_collides_ends_with_status_1(capsys, tmp_path):
     out = tmp_path / "path.csv"
-    lines = planned(capsys, GAPS, *ENDS, "--method", "straight_line", "--out", out, status=1)
+    lines = planned(capsys, GAPS, *ENDS, "--method", "straight_line", "--out", out, fails=True)
     assert re.match(r"no: enters an obstacle at 4\.75,10, ", lines["feasible"])
     assert lines["length"] == "16 m"  # which says nothing beside that of a free path
     assert lines["failure"] == "straight_line: its path is not feasible"
@@ -184,7 +180,7 @@ def test_without_a_path_the_status_is_1(capsys, tmp_path):
     )
     out = tmp_path / "path.csv"
     words = [GAPS, *ENDS, "--method", tmp_path / "none.py", "--out", out]
-    lines = planned(capsys, *words, status=1)
+    lines = planned(capsys, *words, fails=True)
     assert lines["path"] == "none (tired)"
     assert lines["failure"] == f"{tmp_path / 'none.py'}: found no path; {out} is not written"
     assert not out.exists()
@@ -193,7 +189,7 @@ def test_without_a_path_the_status_is_1(capsys, tmp_path):
 def test_a_target_that_cannot_be_reached_ends_with_status_1(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("..#.\n..#.\n")
     ends = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
-    lines = planned(capsys, tmp_path / "room.txt", *ends, status=1)
+    lines = planned(capsys, tmp_path / "room.txt", *ends, fails=True)
     assert lines["failure"] == "--target: 3.5,0.5: no free way leads there from the start"
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import shapely
 from PIL import Image
+from test_plan_command import planned, refused
 from test_workspace_files import geojson
 
 import bezierplan as bp
-from bezierplan.__main__ import main
 from bezierplan.workspaces import files, robot
 
 ARCS = 2 / 3 * robot.ARC_EXCESS
@@ -20,6 +20,9 @@ ARCS = 2 / 3 * robot.ARC_EXCESS
 
 def box(left, right, bottom, top):
     return (np.array([(left, bottom), (right, bottom), (right, top), (left, top)], dtype=float),)
+
+
+WALL = ("--start", "0.3,1", "--target", "1.7,1")
 
 
 def wall(half_length, half_width, half_height, radius):
@@ -51,20 +54,6 @@ def one_wall(kind, folder):
     return folder / "wall.geojson", ()
 
 
-def planned(capsys, *words):
-    main(["plan", *map(str, words)])
-    return {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
-
-
-def refused(capsys, *words, status=2):
-    with pytest.raises(SystemExit) as found:
-        main(["plan", *map(str, words)])
-    told = capsys.readouterr().err
-    assert found.value.code == status
-    assert told.count("\n") == 1
-    return told
-
-
 def least_distance(file, obstacles, bounds):
     """Distance of a written path from obstacles and border, by shapely."""
     points = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:3]
@@ -81,20 +70,7 @@ def least_distance(file, obstacles, bounds):
 def test_around_a_wall_the_length_is_that_of_tangents_and_arcs(capsys, tmp_path, kind, radius):
     file, options = one_wall(kind, tmp_path)
     out = tmp_path / "path.csv"
-    words = [
-        file,
-        "--start",
-        "0.3,1",
-        "--target",
-        "1.7,1",
-        "--robot-radius",
-        radius,
-        *options,
-        "--step",
-        0.001,
-        "--out",
-        out,
-    ]
+    words = [file, *WALL, "--robot-radius", radius, *options, "--step", 0.001, "--out", out]
     found = planned(capsys, *words)
     assert found["robot radius"] == f"{radius:g} m"
     assert found["feasible"] == "yes"
@@ -265,7 +241,6 @@ def test_way_points_are_passed_in_their_order():
     )
 
 
-WALL = ("--start", "0.3,1", "--target", "1.7,1")
 REFUSED = {
     "start": (
         (*WALL, "--robot-radius", "0.4"),

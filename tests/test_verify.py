@@ -24,6 +24,7 @@ from bezierplan.machine import digest
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, recheck, table_files
 from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.running.simulation.policy import Policy
 from bezierplan.study import stored
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -334,27 +335,14 @@ MET = {
     "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
     "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
 }
-MOVES = {
-    "replan": "when_changed",
-    "every": 1,
-    "warm": False,
-    "waits": False,
-    "evades": False,
-    "start": "position",
-    "brake": 1.0,
-}
-SEES = {
-    "sees": "before",
-    "knows": "positions",
-    "check_margin": 0.0,
-    "plan_margins": [0.0],
-    "horizon": 2.0,
-}
+POLICY = Policy(
+    replan="when_changed", waits=False, brake=1.0, horizon=2.0, spacing=0.1, step_seconds=1.0
+)
 DRIVES = CHUNK._replace(
     experiment="d",
     planner="shortest_path",
     problems={name: {"workspace": "field"} for name in MET},
-    policy=MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0},
+    policy=POLICY.model_dump(),
 )
 
 

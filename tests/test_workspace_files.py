@@ -43,10 +43,7 @@ def moved(x, y):
 
 def feature(properties, geometry):
     """A GeoJSON file with a border and one further feature."""
-    border = {
-        "properties": {"role": "border"},
-        "geometry": {"type": "Polygon", "coordinates": [BORDER]},
-    }
+    (border,) = json.loads(geojson())["features"]
     return json.dumps({"features": [border, {"properties": properties, "geometry": geometry}]})
 
 

@@ -175,8 +175,7 @@ def read(file: str) -> tuple[Problems, Worlds]:
     """
     from bezierplan.running import table_files
 
-    # The process that reads problems may be forked, which threads forbid.
-    table = table_files.read(file, threads=False).to_pylist()
+    table = table_files.read(file).to_pylist()
     drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
         row["problem"]: Problem(

@@ -52,7 +52,7 @@ class MovingCircles:
 
     def at(self, step: int) -> np.ndarray:
         """Return the centres (n, 2) at a whole step, in units."""
-        return positions(self.centres, self.velocities, np.array(self.walls), step)
+        return positions(self.centres, self.velocities, np.array(self.walls, float), step)
 
     def workspace(self, step: int, margin: float = 0.0) -> Grid | Circles:
         """Return what planners see at a step: the circles, grown by a margin in units, or the cells

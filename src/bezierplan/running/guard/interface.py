@@ -19,11 +19,9 @@ from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, describe_known
 from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces import files
 
-KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
+KINDS = {each: kind for kind, each in files.KINDS.items()}
 """Type of a workspace -> its kind, as planners name it."""
 
 LIMIT = 60.0
@@ -161,7 +159,13 @@ def find_interface_fault(module: ModuleType) -> str:
             )
     if isinstance(extra := getattr(module, "extra", ()), str):
         return f"extra: {extra!r}: expected a tuple of names, such as ({extra!r},)"
-    return _find_workspaces_fault(getattr(module, "workspaces", ()))
+    kinds = getattr(module, "workspaces", ())
+    if not isinstance(kinds, tuple | list):
+        return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
+    for kind in kinds:
+        if kind not in KINDS.values():
+            return f"workspaces: {kind}: unknown{describe_known(kind, KINDS.values())}"
+    return ""
 
 
 def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> None:
@@ -188,13 +192,3 @@ def check_settings(module: ModuleType, settings: Settings, location: str) -> Non
             raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")
     if hasattr(module, "check"):
         ask(module.check, location, settings)
-
-
-def _find_workspaces_fault(kinds: Any) -> str:
-    """Describe what is wrong with a planner's `workspaces`; empty if nothing."""
-    if not isinstance(kinds, tuple | list):
-        return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
-    for kind in kinds:
-        if kind not in KINDS.values():
-            return f"workspaces: {kind}: unknown{describe_known(kind, KINDS.values())}"
-    return ""

@@ -174,9 +174,5 @@ def _find_start(
     """Return where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
         return None if is_blocked(build_region(grid), tuple(place)) else place
-    row, column = grid.cell_of(*place)
-    return (
-        None
-        if grid.occupied[row, column]
-        else np.array(grid.centre(row * grid.occupied.shape[1] + column))
-    )
+    cell = grid.cell_of(*place)
+    return None if grid.occupied[cell] else grid.in_units(np.array(cell[::-1]) + 0.5)
