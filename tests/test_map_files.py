@@ -167,6 +167,7 @@ ROS_FAULTS = {
     "no key image": (("image: room.png\n", ""), "image: missing key; the name of an image"),
     "turned": (("2.0, 0.0]", "2.0, 0.3]"), "origin: .*: expected .x, y, 0."),
     "origin": (("[-1.0, 2.0, 0.0]", "here"), "origin: 'here': expected .x, y, 0."),
+    "origin of names": (("[-1.0, 2.0, 0.0]", "{x: 0, y: 0}"), "origin: {.*}: expected .x, y, 0."),
     "mode": (("negate: 0", "negate: 0\nmode: Raw"), "mode: Raw: unknown; did you mean raw"),
     "misspelt": (("negate: 0", "occupied_threshold: 1"), "occupied_threshold: unknown key; did"),
     "no mapping": ((YAML, "just a word\n"), "'just a word': expected a mapping with image"),

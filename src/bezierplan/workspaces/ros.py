@@ -37,12 +37,10 @@ Unknown = Literal["occupied", "free"]
 def _is_origin(entry: Any) -> bool:
     """Tell whether an entry is x, y, and a yaw of nearly 0 or nan, which map_saver also writes."""
     try:
+        x, y, yaw = entry
         # Written so that a yaw of nan passes.
-        return (
-            all(map(is_number, entry[:2]))
-            and len(entry) == 3
-            and not abs(math.remainder(float(entry[2]), math.tau)) > 1e-6
-        )
+        turned = abs(math.remainder(float(yaw), math.tau)) > 1e-6
+        return is_number(x) and is_number(y) and not turned
     except (TypeError, ValueError):
         return False
 
