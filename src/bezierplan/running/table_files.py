@@ -37,8 +37,7 @@ def build_table(rows: list[columns.Row], *declared: type) -> pa.Table:
             name: pa.array([row[name] for row in rows], types[name])
             if name in types
             else pa.array([row.get(name) for row in rows])
-            # A table without rows still has its columns.
-            for name in (names or types)
+            for name in names
         }
     )
 

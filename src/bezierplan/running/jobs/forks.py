@@ -104,18 +104,11 @@ class Forks:
 
         job = self._names.bind(*arguments).arguments
         cache = SourceCache(job["sourcecache_path"], job["runtime_sourcecache_path"])
-        file, source, language, *_ = get_source(
+        file, source, *_ = get_source(
             job["path"], cache, job["basedir"], job["wildcards"], job["params"]
         )
-        # Elsewhere libraries may not survive a fork; and a container or another environment has a
-        # Python of its own.
-        if (
-            language != "python"
-            or sys.platform != "linux"
-            or job["container_img"]
-            or job["conda_env"]
-            or job["env_modules"]
-        ):
+        # Elsewhere libraries may not survive a fork; and another environment has a Python of its own.
+        if sys.platform != "linux" or job["conda_env"]:
             self._script(*arguments)
             return
         names = (

@@ -2,6 +2,7 @@
 all methods and experiments.
 """
 
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -58,7 +59,9 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
             f"obstacles: {problem['obstacles']}: expected at most {description['circles']}, the "
             "circles of a layout"
         )
-    return first(layout(description, name, problem["layout"], ends), problem["obstacles"])
+    every = layout(description, name, problem["layout"], ends)
+    count = problem["obstacles"]
+    return replace(every, centres=every.centres[:count], radii=every.radii[:count])
 
 
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
@@ -83,8 +86,3 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
         centres.append(draw_centres(rng, 1, bounds, np.array(ends), radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, np.array(centres), np.array(radii), description["unit"])
-
-
-def first(circles: Circles, count: int) -> Circles:
-    """Return the first circles of a layout: layouts of different numbers of circles are nested."""
-    return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)
