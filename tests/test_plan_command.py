@@ -2,7 +2,6 @@
 line with status 2.
 """
 
-import contextlib
 import importlib.util
 import json
 import re
@@ -11,6 +10,7 @@ import shlex
 import numpy as np
 import pytest
 import yaml
+from commands import call, refused
 from fields import BENCHMARK_MAPS, CELLS
 from PIL import Image
 
@@ -36,18 +36,9 @@ def plan(problem, rng):
 
 def planned(capsys, *words, fails=False):
     """What is printed, by name, and the line of a failure, with which Python ends with status 1."""
-    with pytest.raises(SystemExit) if fails else contextlib.nullcontext() as end:
-        main(["plan", *map(str, words)])
-    lines = {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
-    return lines | {"failure": end and end.value.code}
-
-
-def refused(capsys, *words):
-    with pytest.raises(SystemExit) as end:
-        main(["plan", *map(str, words)])
-    assert end.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    return line
+    failure, lines, _ = call(capsys, "plan", *words)
+    assert isinstance(failure, str) == fails
+    return {line[:16].strip(): line[16:] for line in lines} | {"failure": failure}
 
 
 def test_without_a_method_it_is_the_rounded_shortest_path(capsys):
@@ -273,7 +264,7 @@ FAULTS = {
 @pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_one_line(capsys, fault):
     words, message = FAULTS[fault]
-    assert re.search(message, refused(capsys, *words))
+    assert re.search(message, refused(capsys, "plan", *words))
 
 
 def test_a_straight_path_is_no_longer_than_the_shortest(capsys, tmp_path):
@@ -322,7 +313,7 @@ def test_answer_of_a_planner_comes_through_the_door(capsys, tmp_path, name):
         '    return Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
     )
     ends = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
-    line = refused(capsys, tmp_path / "room.txt", *ends, "--method", planner)
+    line = refused(capsys, "plan", tmp_path / "room.txt", *ends, "--method", planner)
     assert line == f"--method: {planner}: {fault}"
 
 
@@ -337,5 +328,5 @@ def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch
 
     monkeypatch.setattr(shortest_paths, "shortest_path", longer)
     ends = ["--start", "0.5,0.5", "--target", "2.5,0.5"]
-    line = refused(capsys, tmp_path / "room.txt", *ends, "--method", "straight_line")
+    line = refused(capsys, "plan", tmp_path / "room.txt", *ends, "--method", "straight_line")
     assert line.startswith("--method: straight_line: its path is 2 long")

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 import shapely
+from commands import refused
 from PIL import Image
-from test_plan_command import planned, refused
+from test_plan_command import planned
 from test_workspace_files import geojson
 
 import bezierplan as bp
@@ -273,4 +274,4 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_is_told_in_one_line(capsys, tmp_path, name):
     words, told = REFUSED[name]
-    assert told in refused(capsys, one_wall("geojson", tmp_path)[0], *words)
+    assert told in refused(capsys, "plan", one_wall("geojson", tmp_path)[0], *words)

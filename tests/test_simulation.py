@@ -30,17 +30,13 @@ def circles(*rows, pace=1.0, end=100):
     """A field of 20 x 20 with circles (x, y, radius, x velocity, y velocity)."""
     table = np.array(rows, dtype=float).reshape(-1, 5)
     square = (0.0, 20.0, 0.0, 20.0)
-    return MovingCircles(
-        square,
-        square,
-        table[:, :2].copy(),
-        table[:, 3:].copy(),
-        table[:, 2].copy(),
-        "circles",
-        pace,
-        end,
-        "m",
-    )
+    centres, radii, velocities = table[:, :2], table[:, 2], table[:, 3:]
+    return MovingCircles(square, square, centres, velocities, radii, "circles", pace, end, "m")
+
+
+def draw_maps(*drawn):
+    """Maps of cells of 1 m, each drawn in lines."""
+    return tuple(from_lines(lines, 1.0, "m") for lines in drawn)
 
 
 def across(world, start=(0.0, 10.0), target=(20.0, 10.0)):
@@ -114,10 +110,7 @@ def test_grazing_collisions_between_steps_are_found(excess, hits, at):
 
 
 def test_cells_collide_only_while_they_are_occupied():
-    maps = tuple(
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], ["....", ".##.", "...."])
-    )
+    maps = draw_maps(["....", "....", "...."], ["....", ".##.", "...."])
     world = ChangingCells(maps, np.array([2.0]), 1.0, 9)
     line = np.array([[0.5, 1.5], [3.5, 1.5]])
     early, late = (Motion(line, np.array(times)) for times in ([0.0, 2.0], [1.5, 3.0]))
@@ -201,9 +194,7 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
 
 
 # A cell in the middle becomes occupied.
-HIT = tuple(
-    from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."])
-)
+HIT = draw_maps(["....", "....", "...."], ["....", "..#.", "...."])
 
 
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
@@ -268,8 +259,7 @@ def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
     ("replan", "replans"), [("never", 0), ("when_blocked", 0), ("when_changed", 2)]
 )
 def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, replans):
-    lines = (["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
-    maps = tuple(from_lines(each, 1.0, "m") for each in lines)
+    maps = draw_maps(["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
     world = ChangingCells(maps, np.array([0.8, 2.0]), 1.0, 30)
     ride = drive(
         world,
@@ -327,7 +317,7 @@ def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
 
 
 def gate(start, moment, *patterns):
-    maps = tuple(from_lines([pattern] * 3, 1.0, "m") for pattern in patterns)
+    maps = draw_maps(*([pattern] * 3 for pattern in patterns))
     world = ChangingCells(maps, np.array([moment]), 1.0, 20)
     return world, Problem("gate", maps[0], start, (7.5, 1.5))
 

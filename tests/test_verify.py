@@ -16,9 +16,9 @@ import pyarrow.parquet as parquet
 import pytest
 import starts
 from chunks import CHUNK, CLAIMS, MADE
+from commands import call
 from trees import edit
 
-from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import verification
 from bezierplan.machine import digest
 from bezierplan.places import TREE
@@ -101,13 +101,7 @@ def verified(capsys, *words):
     """The status of the command, and the lines that it printed, and those about faults."""
     for known in vars(digest).values():
         getattr(known, "cache_clear", int)()  # as in a process of its own
-    try:
-        main(["verify", *map(str, words), "--cores", "1"])
-        status = 0
-    except SystemExit as end:
-        status = end.code
-    printed = capsys.readouterr()
-    return status, printed.out.splitlines(), printed.err.splitlines()
+    return call(capsys, "verify", *words, "--cores", 1)
 
 
 def edited(file, column, change):

@@ -107,7 +107,7 @@ class Forks:
         file, source, *_ = get_source(
             job["path"], cache, job["basedir"], job["wildcards"], job["params"]
         )
-        # Elsewhere libraries may not survive a fork; and another environment has a Python of its own.
+        # Elsewhere libraries may not survive a fork; another environment has a Python of its own.
         if sys.platform != "linux" or job["conda_env"]:
             self._script(*arguments)
             return
