@@ -118,11 +118,7 @@ def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, star
     """
     size, since, pause = -1, 0.0, 0.001
     # No system call waits for the end of a process and for a line of a file at once.
-    while True:
-        ended, status = os.waitpid(process.pid, os.WNOHANG)
-        if ended:
-            process.returncode = os.waitstatus_to_exitcode(status)
-            return describe_end(status)
+    while process.poll() is None:
         if (now := lines.stat().st_size) != size:
             size, since = now, time.monotonic()
         elif limit is not None:
@@ -132,6 +128,7 @@ def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, star
         # The pause grows, so that a short run is noticed at once.
         time.sleep(pause)
         pause = min(2 * pause, _LOOK)
+    return describe_end(process.returncode)
 
 
 def _log(printed: Path, name: str) -> None:

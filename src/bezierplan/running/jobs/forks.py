@@ -146,7 +146,7 @@ class Forks:
             under_way, status, ended = _watch(ours, benchmark)
         if status is not None and not ended:
             # A script that ends with 1 has told why; of any other end nothing has been told.
-            if os.waitstatus_to_exitcode(status) in (0, 1):
+            if status in (0, 1):
                 return status == 0
             ended = describe_end(status)
         log.report(
@@ -267,7 +267,7 @@ def reap(jobs: dict[int, socket.socket], *_: Any) -> None:
             if not child:
                 return
             with jobs.pop(child) as parent, contextlib.suppress(OSError):
-                parent.sendall(f"{ENDED} {status}\n".encode())
+                parent.sendall(f"{ENDED} {os.waitstatus_to_exitcode(status)}\n".encode())
 
 
 def compile_first() -> None:

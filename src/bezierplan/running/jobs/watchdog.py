@@ -2,7 +2,6 @@
 
 import ctypes
 import logging
-import os
 import resource
 import signal
 import sys
@@ -46,14 +45,13 @@ def measure_cpu_time() -> float:
 
 
 def describe_end(status: int) -> str:
-    """Describe how a process ended before its work was done, from the operating system's status."""
-    if not os.WIFSIGNALED(status):
-        return (
-            "its process ended itself with exit status "
-            f"{os.waitstatus_to_exitcode(status)}, before it was done"
-        )
-    number = os.WTERMSIG(status)
-    name = signal.Signals(number).name if number in set(signal.Signals) else f"number {number}"
+    """Describe how a process ended before its work was done. status: its exit status, or the number
+    of the signal that ended it, below 0.
+    """
+    if status >= 0:
+        return f"its process ended itself with exit status {status}, before it was done"
+    known = -status in set(signal.Signals)
+    name = signal.Signals(-status).name if known else f"number {-status}"
     return f"its process was ended by signal {name}" + (
-        ", by another program or for want of memory" if number == signal.SIGKILL else ""
+        ", by another program or for want of memory" if name == "SIGKILL" else ""
     )
