@@ -139,6 +139,13 @@ def snakemake(
     return CompletedProcess(words, start.exitcode, output, errors)
 
 
+def make(folder: Path, study: str, *words: str, **options: Any) -> CompletedProcess:
+    """Run this tree's workflow for a study in a folder, as `snakemake` does."""
+    workflow = ("-s", Path(__file__).parents[1] / "Snakefile", "--workflow-profile", "none")
+    chosen = ("--cores", "2", "--config", f"studies=[{folder / study}]")
+    return snakemake(folder, *workflow, *words, *chosen, **options)
+
+
 def _run(
     folder: Path,
     words: tuple[str, ...],

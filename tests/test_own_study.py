@@ -17,8 +17,6 @@ from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import verification
 from bezierplan.commands import verify
 
-ROOT = Path(__file__).parents[1]
-
 PLANNER = """
 import numpy as np
 import nearby
@@ -140,16 +138,7 @@ high,length,mean,30,m,9.7
 
 
 def snakemake(folder, *words, study="bends"):
-    common = ["-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2"]
-    given = [
-        "--config",
-        f"studies=[{folder / study}]",
-        "--rerun-triggers",
-        "mtime",
-        "input",
-        "params",
-    ]
-    done = starts.snakemake(folder, *common, *words, *given)
+    done = starts.make(folder, study, *words, "--rerun-triggers", "mtime", "input", "params")
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
 

@@ -82,9 +82,7 @@ def original(tmp_path_factory):
     code = {"bend.py": BEND.format(seed=""), "place.py": "MIDDLE = 5.0\n"}
     for name, text in (STUDY | code).items():
         (study / name).write_text(text)
-    words = ("--snakefile", str(TREE / "Snakefile"), "--config", 'studies=["./bend"]')
-    words += ("--cores", "2", "--workflow-profile", "none")
-    done = starts.snakemake(folder, "smoke", *words)
+    done = starts.make(folder, "bend", "smoke")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 

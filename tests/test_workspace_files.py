@@ -218,13 +218,17 @@ GRID_FAULTS = {
 }
 
 
+def load_cells(folder, cell=1.0):
+    return files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder))
+
+
 @pytest.mark.parametrize("fault", GRID_FAULTS)
 def test_map_fault_is_told(fault, tmp_path):
     content, told = GRID_FAULTS[fault]
     if content is not None:
         (tmp_path / "map").write_bytes(content)
     with pytest.raises(ValueError, match=told) as caught:
-        files.load({"kind": "grid", "unit": "m", "file": "map", "cell": 1.0}, tmp_path)
+        load_cells(tmp_path)
     assert "map: " in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -233,7 +237,7 @@ def test_map_fault_is_told(fault, tmp_path):
 def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
     (tmp_path / "map").write_text("..\n")
     with pytest.raises(ValueError, match=r"map: cell: .*: the border: .* is not a coordinate"):
-        files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, tmp_path)
+        load_cells(tmp_path, cell)
 
 
 @pytest.mark.parametrize(
@@ -263,12 +267,7 @@ def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(
 ):
     thickness = 10**exponent
     shapes = {
-        "wall": [
-            (-length, -thickness),
-            (length, -thickness),
-            (length, thickness),
-            (-length, thickness),
-        ],
+        "wall": [(x * length, y * thickness) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
         "wedge": [(-length, -2 * thickness), (2 * length, 0), (-length, 2 * thickness)],
         "cap": [(-length, -thickness), (length, -thickness), (0, 2 * thickness)],
     }
@@ -291,9 +290,7 @@ def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(expone
     with TemporaryDirectory() as folder:
         (Path(folder) / "map").write_text("....\n.##.\n.##.\n....\n")
         try:
-            found = files.load(
-                {"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder)
-            )
+            found = load_cells(folder, cell)
         except ValueError:
             assert cell < 1e-6
             return
@@ -355,13 +352,12 @@ RANDOM = {"bounds": [-10, 10, -10, 10], "radius": 2.0, "circles": 10, "unit": "u
 
 
 def test_layout_depends_on_its_names_alone():
-    one, again = (
-        random_circles.layout(RANDOM, "study/random", 3, [(0, 0), (4, 6)]) for _ in range(2)
+    one, again, other = (
+        random_circles.layout(RANDOM, "study/random", number, [(0, 0), (4, 6)]).centres
+        for number in (3, 3, 4)
     )
-    assert np.array_equal(one.centres, again.centres)
-    assert not np.array_equal(
-        one.centres, random_circles.layout(RANDOM, "study/random", 4, [(0, 0), (4, 6)]).centres
-    )
+    assert np.array_equal(one, again)
+    assert not np.array_equal(one, other)
 
 
 def test_problems_in_random_circles_have_free_ends():
