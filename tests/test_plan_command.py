@@ -255,7 +255,6 @@ FAULTS = {
         [GAPS, *ENDS, "--robot-radius", "-1"],
         "--robot-radius: -1; expected 0 or a number of at least 1e-06",
     ),
-    "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
     "rule": ([GAPS, *ENDS, "--cell", "1", "--rule", "some"], "--rule: some: unknown"),
     "unknown option": ([GAPS, *ENDS, "--fast"], "unrecognized arguments: --fast"),
 }

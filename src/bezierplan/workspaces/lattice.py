@@ -49,19 +49,18 @@ def build_grid_lattice(
 ) -> Lattice:
     """Build the lattice of a grid with the cells of start and target, both (x, y) in units.
 
-    Raises ValueError if one of them lies outside the grid, or in an occupied cell.
+    Raises ValueError if one of them lies in an occupied cell.
     """
     rows, columns = grid.occupied.shape
     cells, ends = [], 0.0
     for name, point in (("start", start), ("target", target)):
         cell = grid.cell_of(*point)
-        if cell is None or grid.occupied[cell]:
-            where = (
-                "outside the grid"
-                if cell is None
-                else f"in the occupied cell of row {cell[0]}, column {cell[1]}"
+        assert cell  # the ends of a problem lie on its map
+        if grid.occupied[cell]:
+            raise ValueError(
+                f"{name}: {point}: in the occupied cell of row {cell[0]}, column {cell[1]}; "
+                "expected a point of a free cell"
             )
-            raise ValueError(f"{name}: {point}: {where}; expected a point of a free cell")
         cells.append(cell[0] * columns + cell[1])
         # A path from a place to itself has no length.
         if start != target:

@@ -81,7 +81,6 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     Raises ValueError, which names file or option.
     """
     radius = robot_radius or 0.0
-    robot.check_radius(radius)
     if description["kind"] != "raster":
         return robot.grow(_load(file, description), radius)
     # It grows before it becomes cells, by the description's rule: `grow` itself knows only
