@@ -103,13 +103,11 @@ def verified(capsys, *words):
 
 
 def edited(file, column, change):
-    """Change a column of a file by a function of its list; with a digest like an honest file."""
+    """Change each value of a column of a file; with a digest like an honest file."""
     table = parquet.read_table(file)
     place = table.column_names.index(column)
-    changed = table.set_column(
-        place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
-    )
-    table_files.write(changed, str(file))
+    values = pa.array([*map(change, table[column].to_pylist())], table.schema.field(column).type)
+    table_files.write(table.set_column(place, column, values), str(file))
 
 
 def listed(folder, name):
@@ -185,7 +183,7 @@ def test_a_list_that_is_none_and_a_missing_file_are_told_and_the_proof_goes_on(r
 def test_a_claim_or_a_bound_that_was_edited_together_with_the_list_is_named(results, capsys):
     """And so are the list, of which the page has the digest, and the page, which no list has."""
     bounds, claims = "bend/problems/bends.bounds.parquet", "bend/claims.csv"
-    edited(results / bounds, "bound", lambda values: [value + 0.1 for value in values])
+    edited(results / bounds, "bound", lambda value: value + 0.1)
     listed(results, bounds)
     edit(results / claims, "shorter", "longer")
     listed(results, claims)
@@ -372,23 +370,19 @@ def test_runs_and_drives_are_sound_and_can_be_made_again(each):
 
 
 EDITS: dict[tuple[str, str, str], Callable] = {
-    ("e", "feasible", "feasible"): lambda values: [True] * len(values),
-    ("e", "length", "length"): lambda values: [value - 1e-6 for value in values],
-    ("e", "clearance", "clearance"): lambda values: [value + 1e-7 for value in values],
-    ("e", "path_points", "length"): lambda values: [[1.0, 8.0, 5.0, 9.0, 9.0, 8.0]] * len(values),
-    ("e", "path_points", "path_points"): lambda values: [
-        [*points[:-1], points[-1] + 0.5] for points in values
-    ],
-    ("e", "path_curve", "path_points"): lambda values: [""] * len(values),
-    ("e", "repeat", "repeat"): lambda values: [value + 1 for value in values],
-    ("e", "method", "method"): lambda values: ["other"] * len(values),
-    ("e", "generations", "generations"): lambda values: [7] * len(values),
-    ("d", "arrival", "objective"): lambda values: [value - 1.0 for value in values],
-    ("d", "length", "length"): lambda values: [value - 1.0 for value in values],
-    ("d", "feasible", "feasible"): lambda values: [not value for value in values],
-    ("d", "path_points", "length"): lambda values: [
-        [*points[:2], 5.0, 9.0, *points[2:]] for points in values
-    ],
+    ("e", "feasible", "feasible"): lambda value: True,
+    ("e", "length", "length"): lambda value: value - 1e-6,
+    ("e", "clearance", "clearance"): lambda value: value + 1e-7,
+    ("e", "path_points", "length"): lambda points: [1.0, 8.0, 5.0, 9.0, 9.0, 8.0],
+    ("e", "path_points", "path_points"): lambda points: [*points[:-1], points[-1] + 0.5],
+    ("e", "path_curve", "path_points"): lambda value: "",
+    ("e", "repeat", "repeat"): lambda value: value + 1,
+    ("e", "method", "method"): lambda value: "other",
+    ("e", "generations", "generations"): lambda value: 7,
+    ("d", "arrival", "objective"): lambda value: value - 1.0,
+    ("d", "length", "length"): lambda value: value - 1.0,
+    ("d", "feasible", "feasible"): lambda value: not value,
+    ("d", "path_points", "length"): lambda points: [*points[:2], 5.0, 9.0, *points[2:]],
 }
 
 
@@ -425,8 +419,8 @@ def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, cas
 @pytest.mark.parametrize(
     ("name", "column", "change"),
     [
-        ("e", "history", lambda values: [[each[0] / 2] for each in values]),
-        ("d", "steps", lambda values: [value + 1 for value in values]),
+        ("e", "history", lambda values: [values[0] / 2]),
+        ("d", "steps", lambda value: value + 1),
     ],
 )
 def test_what_no_path_tells_shows_when_a_run_is_made_again(tasks, tmp_path, name, column, change):

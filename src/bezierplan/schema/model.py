@@ -95,16 +95,16 @@ def list_keys(model: type[Model]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
-def parse(model: type[M], content: Any, location: str) -> M:
+def parse(model: type[M], content: Any, *location: str) -> M:
     """Return the content of a file as a model. Raises Fault, beginning with a location."""
-    sound, faults, _ = parse_sound_part(model, content, location)
+    sound, faults, _ = parse_sound_part(model, content, *location)
     if faults:
         raise Fault(*faults)
     return sound
 
 
 def parse_sound_part(
-    model: type[M], content: Any, location: str
+    model: type[M], content: Any, *location: str
 ) -> tuple[M, list[str], list[tuple[str, str]]]:
     """Return the sound part of a file's content as a model, the faults of the rest, and section and
     name of the entries that are left out for them. Raises Fault if too little is left.
@@ -117,7 +117,7 @@ def parse_sound_part(
             return model.model_validate(content), [*lines], []
         except ValidationError as error:
             faults, told = error.errors(include_url=False), len(lines)
-            lines |= dict.fromkeys(describe_fault(error, location).lines)
+            lines |= dict.fromkeys(describe_fault(error, *location).lines)
         # Options that panels share are copied before they are checked, so their unknown keys stay
         # and are told again.
         if len(lines) == told or not _take_out_unknown_keys(faults):

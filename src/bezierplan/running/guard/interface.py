@@ -17,7 +17,7 @@ from bezierplan.planners.parts.settings import read_setting
 from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, check_known, describe_known
+from bezierplan.schema.checked import Fault, check_all, describe_known
 from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
 from bezierplan.workspaces import files
 
@@ -37,23 +37,7 @@ def load_planner_module(planner: str, location: str) -> ModuleType:
             _read_traits_of_file(planner)
         except PlannerFailure as failure:
             raise Fault(f"{location}: {failure}") from None
-    module, fault = import_planner(planner)
-    if fault:
-        raise Fault(f"{location}: {fault}")
-    return module
-
-
-def import_planner(planner: str) -> tuple[ModuleType | None, str]:
-    """Import a planner in this process; return its module and what is wrong with it, empty if
-    nothing is.
-    """
-    try:
-        module = load_planner(planner)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:  # a user's file can fail in any way
-        return None, describe_in_one_line(error)
-    return module, find_interface_fault(module)
+    return load_planner(planner)
 
 
 class Traits(NamedTuple):
@@ -95,8 +79,12 @@ def describe_in_process(begin: Callable[[str], None], planner: str) -> Iterator[
     """Yield the traits of a planner's file, or what is wrong with it. It runs in a process of its
     own.
     """
-    module, fault = import_planner(planner)
-    yield fault or _read_traits(module)
+    try:
+        module = load_planner(planner)
+    except BaseException as error:  # a user's file can fail in any way
+        yield describe_in_one_line(error)
+    else:
+        yield find_interface_fault(module) or _read_traits(module)
 
 
 def _read_traits(module: ModuleType) -> Traits:
@@ -170,9 +158,7 @@ def find_interface_fault(module: ModuleType) -> str:
 
 def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> None:
     """Raise Fault, beginning with a location, for a name that is no setting of a planner."""
-    known = read_settings(module)
-    for name in names:
-        check_known(name, known, location)
+    check_all(names, read_settings(module), location)
 
 
 def check_settings(module: ModuleType, settings: Settings, location: str) -> None:
