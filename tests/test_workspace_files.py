@@ -349,11 +349,12 @@ def test_text_gives_a_workspace_back_bit_by_bit(description):
 
 
 RANDOM = {"bounds": [-10, 10, -10, 10], "radius": 2.0, "circles": 10, "unit": "unit"}
+PLACE = {"start": [0, 0], "target": [4, 6], "obstacles": 10, "layout": 0}
 
 
 def test_layout_depends_on_its_names_alone():
     one, again, other = (
-        random_circles.layout(RANDOM, "study/random", number, [(0, 0), (4, 6)]).centres
+        random_circles.draw(RANDOM, PLACE | {"layout": number}, "study/random").centres
         for number in (3, 3, 4)
     )
     assert np.array_equal(one, again)
@@ -378,4 +379,4 @@ def test_problems_in_random_circles_have_free_ends():
 
 def test_layout_that_cannot_be_drawn_is_given_up():
     with pytest.raises(ValueError, match="radius: no circle keeps 40 away from start and target"):
-        random_circles.layout(RANDOM | {"radius": 40.0}, "study/random", 0, [(0, 0), (4, 6)])
+        random_circles.draw(RANDOM | {"radius": 40.0}, PLACE, "study/random")

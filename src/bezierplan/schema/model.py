@@ -117,7 +117,7 @@ def parse_sound_part(
             return model.model_validate(content), [*lines], []
         except ValidationError as error:
             faults, told = error.errors(include_url=False), len(lines)
-            lines |= dict.fromkeys(describe_fault(error, *location).lines)
+            lines |= dict.fromkeys(_list_fault_lines(error, *location))
         # Options that panels share are copied before they are checked, so their unknown keys stay
         # and are told again.
         if len(lines) == told or not _take_out_unknown_keys(faults):
@@ -151,10 +151,8 @@ def _take_out_unknown_keys(faults: list[Any]) -> bool:
     return bool(unknown)
 
 
-def describe_fault(error: ValidationError, *location: str) -> Fault:
-    """Describe all faults of a model in lines, each with a location and the keys that
-    lead to it.
-    """
+def _list_fault_lines(error: ValidationError, *location: str) -> list[str]:
+    """List a line for each fault of a model, with a location and the keys that lead to it."""
     # After a key that is itself wrong, pydantic puts `[key]`.
     lines = [
         [
@@ -166,7 +164,7 @@ def describe_fault(error: ValidationError, *location: str) -> Fault:
     ]
     # Faults from which others may follow come first: the first line is the text of the exception.
     lines.sort(key=lambda line: (": unknown key" not in line[-1], len(line)))
-    return Fault(*map(": ".join, lines))
+    return [*map(": ".join, lines)]
 
 
 def build_error(text: str) -> PydanticCustomError:

@@ -203,15 +203,6 @@ def _describe_contents(folder: Path) -> list[str]:
     return lines
 
 
-def read_study(folder: Path) -> Study:
-    """Read the study in a folder, and check each of its files on its own. Raises Fault."""
-    _load_code(folder)
-    study, faults, _ = _read(folder, {})
-    if faults:
-        raise Fault(*faults)
-    return study
-
-
 def _load_code(folder: Path) -> None:
     """Load the code of the study in a folder, so that its metrics are known. Raises Fault."""
     from bezierplan.analysis import study_code
