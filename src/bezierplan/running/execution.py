@@ -72,8 +72,8 @@ def build_task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
 
 
 def describe_chunk(chunk: Chunk) -> str:
-    """Return how a message about all runs of a chunk begins."""
-    return f"run {chunk.name}: planner {chunk.planner}"
+    """Return how a message about all runs of a chunk begins, with a star for conditions."""
+    return f"run {chunk.study}/{chunk.experiment}/*/{chunk.method}: planner {chunk.planner}"
 
 
 def run_tasks(

@@ -49,10 +49,11 @@ def _is_file_name(entry: Any) -> bool:
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
-FileName = Annotated[
-    str, build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]")
+File = Annotated[
+    str,
+    build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]"),
+    Names("file"),
 ]
-File = Annotated[FileName, Names("file")]
 Unit = Annotated[
     str,
     build_value_type(
