@@ -5,9 +5,11 @@ in one line, and replaying a drive.
 import math
 import re
 
+import faults
 import numpy as np
 import pandas as pd
 import pytest
+from trees import edit
 
 from bezierplan.analysis import metrics, results
 from bezierplan.analysis.stored_runs import is_equal
@@ -16,7 +18,6 @@ from bezierplan.geometry import shortest_paths
 from bezierplan.running import drives, execution, problems
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
-from bezierplan.schema.checked import Fault
 from bezierplan.study import loading
 from bezierplan.study.jobs import build_chunk, build_problems_job
 
@@ -80,13 +81,12 @@ FIRST = ".......\n...#...\n.......\n...#...\n...#...\n"
 SECOND = ".......\n...#...\n...#...\n...#...\n.......\n"
 
 
-def written(folder, old="", new=""):
-    """A study in a folder, with a text of its experiments replaced."""
-    assert old in EXPERIMENTS
+def written(folder):
+    """A study in a folder."""
     home = folder / "mystudy"
     home.mkdir()
     for name, text in {
-        "experiments.yaml": EXPERIMENTS.replace(old, new),
+        "experiments.yaml": EXPERIMENTS,
         "walk.py": PLANNER,
         "first.txt": FIRST,
         "second.txt": SECOND,
@@ -145,21 +145,24 @@ def test_equal_seeds_give_equal_drives(driven):
     assert is_equal(found.runs.iloc[0], stored)
 
 
+def resuming(folder, resumes=RESUMES):
+    """The study with a planner whose plans start from the last one."""
+    home = written(folder)
+    edit(home / "experiments.yaml", "start: centre", "start: centre, warm: true")
+    edit(home / "walk.py", PLANNER, PLANNER + resumes)
+    return loading.load([home])["mystudy"]
+
+
 def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
     """Each plan says by what it kept how many came before it; one without a path keeps nothing."""
-    home = written(tmp_path, "start: centre", "start: centre, warm: true")
-    with (home / "walk.py").open("a") as file:
-        file.write(RESUMES)
-    for run in chunk(loading.load([home])["mystudy"])[0].to_pylist():
+    for run in chunk(resuming(tmp_path))[0].to_pylist():
         assert run["evaluations"] > run["replans"] + 1 > 1
 
 
 def test_a_resume_without_a_state_is_told(tmp_path):
-    home = written(tmp_path, "start: centre", "start: centre, warm: true")
-    with (home / "walk.py").open("a") as file:
-        file.write(RESUMES.replace("evaluations=made), made", "evaluations=made)"))
+    study = resuming(tmp_path, RESUMES.replace("evaluations=made), made", "evaluations=made)"))
     with pytest.raises(RuntimeError, match=r"resume returns a Plan; expected a Plan and what"):
-        chunk(loading.load([home])["mystudy"])
+        chunk(study)
 
 
 def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
@@ -238,10 +241,8 @@ def test_files_of_problems_keep_the_world(driven, tmp_path):
     ],
 )
 def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
-    with pytest.raises(Fault) as fault:
-        loading.load([written(tmp_path, old, new)])
-    assert told in str(fault.value)
-    assert "\n" not in str(fault.value)
+    home = written(tmp_path)
+    assert told in faults.told(home / "experiments.yaml", old, new, home)
 
 
 def a_row(room, points, times):
