@@ -206,10 +206,10 @@ def read_path(path: Any) -> Path:
     return copy
 
 
-def _require(fits: Any, wanted: str) -> None:
-    """Raise Unfit with a message unless an answer fits."""
-    if not fits:
-        raise Unfit(wanted)
+def _require(truth: Any, message: str) -> None:
+    """Raise Unfit with a message unless something is true of an answer."""
+    if not truth:
+        raise Unfit(message)
 
 
 def _convert_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:

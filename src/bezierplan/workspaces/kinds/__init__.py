@@ -49,11 +49,10 @@ def _is_file_name(entry: Any) -> bool:
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
-File = Annotated[
-    str,
-    build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]"),
-    Names("file"),
+FileName = Annotated[
+    str, build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]")
 ]
+File = Annotated[FileName, Names("file")]
 Unit = Annotated[
     str,
     build_value_type(
