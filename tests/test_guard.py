@@ -117,7 +117,7 @@ ENDS = {
 def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(
     end, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(interface, "LIMIT", 3.0)
+    monkeypatch.setattr(process, "STARTS", 3.0)
     file = tmp_path / "ends.py"
     file.write_text(f"{end}\n{SOUND}")
     with pytest.raises(checked.Fault) as fault:

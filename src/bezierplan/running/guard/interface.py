@@ -24,9 +24,6 @@ from bezierplan.workspaces import files
 KINDS = {each: kind for kind, each in files.KINDS.items()}
 """Type of a workspace -> its kind, as planners name it."""
 
-LIMIT = 60.0
-"""Seconds for which a planner's file may be executed when it is imported."""
-
 
 def load_planner_module(planner: str, location: str) -> ModuleType:
     """Load the module of a planner, given as a name or the path of a file. Raises Fault, beginning
@@ -69,7 +66,7 @@ def _read_traits_of_file(planner: str) -> Traits:
     """
     file = str(Path(planner).resolve())
     work = partial(describe_in_process, planner=file)
-    (said,) = process.run_function(work, "when it is imported", LIMIT)
+    (said,) = process.run_function(work, "when it is imported", process.STARTS)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)
