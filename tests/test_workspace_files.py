@@ -377,6 +377,11 @@ def test_problems_in_random_circles_have_free_ends():
             assert np.hypot(*(problem.workspace.centres - end).T).min() > 5.0
 
 
+def test_bounds_of_random_circles_beyond_all_coordinates_are_told():
+    with pytest.raises(ValueError, match="^bounds: 200000 is not a coordinate"):
+        random_circles.draw(RANDOM | {"bounds": [0, 2e5, 0, 10]}, PLACE, "study/random")
+
+
 def test_layout_that_cannot_be_drawn_is_given_up():
     with pytest.raises(ValueError, match="radius: no circle keeps 40 away from start and target"):
         random_circles.draw(RANDOM | {"radius": 40.0}, PLACE, "study/random")
