@@ -378,7 +378,7 @@ def test_problems_in_random_circles_have_free_ends():
 
 
 def test_bounds_of_random_circles_beyond_all_coordinates_are_told():
-    with pytest.raises(ValueError, match="^bounds: 200000 is not a coordinate"):
+    with pytest.raises(ValueError, match=r"^bounds: 200000 is not a coordinate"):
         random_circles.draw(RANDOM | {"bounds": [0, 2e5, 0, 10]}, PLACE, "study/random")
 
 
