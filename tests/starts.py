@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 import warnings
 from functools import partial
@@ -47,6 +48,14 @@ def python(code: str, folder: Path, *homes: Path, **variables: str) -> str:
     )
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
+
+
+def appear(file: Path, seconds: float = 120) -> None:
+    """Wait for a file that another process makes."""
+    until = time.monotonic() + seconds
+    while not file.exists():
+        assert time.monotonic() < until, file
+        time.sleep(0.01)
 
 
 class Fork(subprocess.Popen):
@@ -128,6 +137,13 @@ def snakemake(
         start.join()
         output, errors = (file.read_text() for file in printed)
     return CompletedProcess(words, start.exitcode, output, errors)
+
+
+def make(folder: Path, study: str, *words: str, **options: Any) -> CompletedProcess:
+    """Run this tree's workflow for a study in a folder, as `snakemake` does."""
+    workflow = ("-s", Path(__file__).parents[1] / "Snakefile", "--workflow-profile", "none")
+    chosen = ("--cores", "2", "--config", f"studies=[{folder / study}]")
+    return snakemake(folder, *workflow, *words, *chosen, **options)
 
 
 def _run(

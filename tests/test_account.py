@@ -240,7 +240,6 @@ EDITS = [
     ("reads/bend.py", CODE, True),
     ("reads/bend.py", DOCSTRING, True),
     ("reads/bend.py", put("Plan one bend", "Plan a bend"), False),
-    ("reads/place.py", COMMENT, False),
     ("reads/place.py", put("1.0", "1.1"), True),
     ("reads/data/shift.txt", append("1"), True),
     ("beside.txt", append("1"), True),

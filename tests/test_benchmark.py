@@ -87,8 +87,8 @@ def test_a_cost_is_a_multiple_of_the_fixed_work(script):
     assert 2 < frame.ratio(lambda: [frame.fixed() for _ in range(4)]) < 8
 
 
-# macOS has no call that makes a process the parent of those that lose their own
-# (`watchdog.adopt_descendants`), so there the benchmark misses them (`counted.py`).
+# macOS has no call that makes a process the parent of those that lose their own, so there the
+# benchmark misses them (`counted.py`).
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere detached processes do not count")
 def test_work_of_processes_that_nobody_waits_for_counts():
     """A process of a process, both detached, that works for three CPU seconds."""

@@ -32,14 +32,9 @@ def test_a_row_has_the_declared_columns_and_no_other():
     )
     assert set(runs.column_names) == {*columns.PLANNED, *columns.RESULTS, "layout"}
     assert "layout" in PLACE
-    assert table_files.find_fault(runs.schema, *columns.TABLES["runs"].every) == ""
-    assert table_files.find_fault(times.schema, *columns.TABLES["times"].every) == ""
-    assert (
-        table_files.find_fault(
-            problems.compute_bounds(BLOCKED, {}).schema, *columns.TABLES["bounds"].every
-        )
-        == ""
-    )
+    made = {"runs": runs, "times": times, "bounds": problems.compute_bounds(BLOCKED, {})}
+    for kind, table in made.items():
+        assert table_files.find_fault(table.schema, *columns.TABLES[kind].every) == ""
 
 
 ROW = {"id": "a", "cpu_s": 1.0, "wall_s": 2.0}

@@ -229,51 +229,41 @@ CHECK = (
     'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is '
     'needed")\n\n\ndef plan('
 )
+# Settings, what is told of them, and perhaps a text of the planner and another in its place.
 FAULTS = {
-    "missing setting": (
-        "plan(",
-        "plan(",
-        {},
-        "settings are missing: evaluations: a whole number at least 1",
-    ),
+    "missing setting": ({}, "settings are missing: evaluations: a whole number at least 1"),
     "several missing settings": (
-        "Range(1)]",
-        'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
         {"quick": True},
         "missing: evaluations: a whole number at least 1; "
         "share: a number from 0 to 1; rule: one of a, b",
+        "Range(1)]",
+        'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
     ),
     "unknown setting": (
-        "plan(",
-        "plan(",
         {"evaluation": 20},
         "settings: evaluation: unknown; did you mean evaluations?",
     ),
     "wrong type": (
-        "plan(",
-        "plan(",
         {"evaluations": "many"},
         "settings: evaluations: 'many'; expected a whole number",
     ),
     "out of range": (
-        "plan(",
-        "plan(",
         {"evaluations": 0},
         "settings: evaluations: 0; expected a whole number at least 1",
     ),
     "settings that do not fit": (
-        "def plan(",
-        CHECK,
         {"evaluations": 20},
         "settings: evaluations: 20; an odd number is needed",
+        "def plan(",
+        CHECK,
     ),
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=str)
+@pytest.mark.parametrize("fault", FAULTS)
 def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
-    old, new, settings, told = FAULTS[fault]
-    file = written(tmp_path, WALK.replace(old, new, 1))
+    settings, told, *change = FAULTS[fault]
+    file = written(tmp_path, WALK.replace(*change, 1) if change else WALK)
     with pytest.raises(Fault) as caught:
         contract.check_planner(file, settings)
     message = str(caught.value)

@@ -17,6 +17,7 @@ from bezierplan.machine import digest as digests
 
 SOURCE = Path(__file__).parents[1] / "src"
 SYNTAX = Path(__file__).parents[1] / ".cache" / "syntax"
+GENETIC = "bezierplan/planners/parts/genetic.py"
 ASK = """
 from bezierplan.machine.digest import compute_source_digest
 
@@ -45,7 +46,7 @@ def append(file, text):
 
 def test_package_above_a_module_counts(tree):
     before = digest(tree, "bezierplan.planners.parts.genetic")
-    append(tree / "bezierplan" / "planners" / "parts" / "__init__.py", "\nNEW = 1\n")
+    append((tree / GENETIC).with_name("__init__.py"), "\nNEW = 1\n")
     assert digest(tree, "bezierplan.planners.parts.genetic") != before
 
 
@@ -53,7 +54,7 @@ def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
     planner = tmp_path / "mine.py"
     planner.write_text("from bezierplan.planners.parts import genetic\n")
     before = digest(tree, str(planner))
-    append(tree / "bezierplan" / "planners" / "parts" / "genetic.py", "\nNEW = 1\n")
+    append(tree / GENETIC, "\nNEW = 1\n")
     after = digest(tree, str(planner))
     append(planner, "NEW = 1\n")
     assert len({before, after, digest(tree, str(planner))}) == 3
@@ -114,9 +115,9 @@ def test_a_kernel_outlives_an_edit_that_cannot_change_it(tree):
     first, folder = kernel(tree)
     assert first == 0
     assert Path(folder).is_relative_to(tree.parent / "caches" / "bezierplan")
-    file = tree / "bezierplan" / "planners" / "parts" / "genetic.py"
+    file = tree / GENETIC
     file.write_text("# a comment that moves all lines\n" + file.read_text())
-    append(tree / "bezierplan" / "running" / "execution.py", "\nNEW = 1\n")
+    append(tree / "bezierplan/running/execution.py", "\nNEW = 1\n")
     assert kernel(tree) == (1, folder)
     append(file, "\nNEW = 1\n")
     again, other = kernel(tree)

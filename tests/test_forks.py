@@ -62,9 +62,9 @@ def test_what_is_forked_starts_before_the_first_job_again_if_it_was_killed_and_e
         return int(file.read_text())
 
     forks.start()
-    started = forks.process
+    started = forks._process.pid
     forks.start()
-    assert parent() == started == forks.process
+    assert parent() == started == forks._process.pid
     os.kill(started, signal.SIGKILL)
     assert gone(started)
     again = parent()
@@ -120,7 +120,7 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
     parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
     assert imported[-1] == "True"
     assert len(set(parents)) == 1
-    assert len(os.listdir(f"/proc/{forks.process}/task")) == 1, (
+    assert len(os.listdir(f"/proc/{forks._process.pid}/task")) == 1, (
         "a process that is forked must have one thread"
     )
 

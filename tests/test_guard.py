@@ -7,12 +7,12 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from chunks import BENDS, DISC
+from starts import appear
 
 from bezierplan.analysis.stored_runs import format_row
 from bezierplan.planners import load_planner
@@ -117,7 +117,7 @@ ENDS = {
 def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(
     end, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(interface, "LIMIT", 3.0)
+    monkeypatch.setattr(process, "STARTS", 3.0)
     file = tmp_path / "ends.py"
     file.write_text(f"{end}\n{SOUND}")
     with pytest.raises(checked.Fault) as fault:
@@ -166,9 +166,7 @@ def test_a_signal_ends_a_command_and_its_planner(number, tmp_path):
         # A shell's job in the background would leave it ignored.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    until = time.monotonic() + 60
-    while not begun.exists() and time.monotonic() < until:
-        time.sleep(0.05)
+    appear(begun)
     os.kill(command.pid, number)
     _, told = command.communicate(timeout=60)
     interrupted = number == signal.SIGINT

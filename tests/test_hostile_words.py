@@ -3,6 +3,7 @@ work.
 """
 
 import pytest
+from commands import refused
 
 from bezierplan.__main__ import main
 from bezierplan.commands import run
@@ -28,11 +29,7 @@ def test_words_that_cannot_be_meant_end_in_one_line(case, tmp_path, monkeypatch,
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a_file").touch()
     words, told = WORDS[case]
-    with pytest.raises(SystemExit) as ended:
-        main(words)
-    printed = capsys.readouterr()
-    assert (ended.value.code, printed.out) == (2, "")
-    (line,) = printed.err.split("\n")[:-1]
+    line = refused(capsys, *words)
     assert told in line
     assert line.isprintable()
     assert [file.name for file in tmp_path.iterdir()] == ["a_file"]

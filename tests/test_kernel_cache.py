@@ -12,6 +12,7 @@ from functools import partial
 
 import pytest
 import starts
+from starts import appear
 
 from bezierplan.machine import kernel_cache
 
@@ -90,14 +91,6 @@ def start(tmp_path):
     for process in started:
         process.kill()
         process.communicate()
-
-
-def appear(file, seconds=60):
-    """Wait for a file."""
-    until = time.monotonic() + seconds
-    while not file.exists():
-        assert time.monotonic() < until, file
-        time.sleep(0.01)
 
 
 def test_one_of_two_processes_compiles(start, tmp_path):

@@ -67,7 +67,7 @@ def test_ends_are_the_ways_from_start_and_to_target_in_cells():
 
 @pytest.mark.parametrize(
     ("start", "target", "named"),
-    [((3.0, 1.0), (1.0, 1.0), "start"), ((1.0, 1.0), (11.0, 1.0), "target")],
+    [((3.0, 1.0), (1.0, 1.0), "start"), ((1.0, 1.0), (3.0, 1.0), "target")],
 )
 def test_an_end_that_is_in_no_free_cell_is_named(start, target, named):
     grid = from_lines([".....", ".#..."], 2.0, "unit")

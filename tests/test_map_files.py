@@ -63,16 +63,14 @@ def test_a_map_that_was_saved_on_another_machine(tmp_path):
         "0.000000]\nnegate: 0\n"
         "occupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
-    grid = files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
+    described = {"kind": "ros_map", "unit": "m", "file": "map.yaml"}
+    grid = files.load(described, tmp_path)
     assert np.array_equal(~grid.occupied, (pixels == 254)[::-1])
     assert grid.bounds == pytest.approx((-10.0, -9.2, -10.0, -9.4))
-    assert (
-        files.sources({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)[1]
-        == tmp_path / "map.pgm"
-    )
+    assert files.sources(described, tmp_path)[1] == tmp_path / "map.pgm"
     (tmp_path / "map.pgm").unlink()
     with pytest.raises(ValueError, match=r"image: /home/somebody/map\.pgm: no such file"):
-        files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
+        files.load(described, tmp_path)
 
 
 def test_negated_colours(tmp_path):
@@ -169,6 +167,7 @@ ROS_FAULTS = {
     "no key image": (("image: room.png\n", ""), "image: missing key; the name of an image"),
     "turned": (("2.0, 0.0]", "2.0, 0.3]"), "origin: .*: expected .x, y, 0."),
     "origin": (("[-1.0, 2.0, 0.0]", "here"), "origin: 'here': expected .x, y, 0."),
+    "origin of names": (("[-1.0, 2.0, 0.0]", "{x: 0, y: 0}"), "origin: {.*}: expected .x, y, 0."),
     "mode": (("negate: 0", "negate: 0\nmode: Raw"), "mode: Raw: unknown; did you mean raw"),
     "misspelt": (("negate: 0", "occupied_threshold: 1"), "occupied_threshold: unknown key; did"),
     "no mapping": ((YAML, "just a word\n"), "'just a word': expected a mapping with image"),

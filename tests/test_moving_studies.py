@@ -5,9 +5,11 @@ in one line, and replaying a drive.
 import math
 import re
 
+import faults
 import numpy as np
 import pandas as pd
 import pytest
+from trees import edit
 
 from bezierplan.analysis import metrics, results
 from bezierplan.analysis.stored_runs import is_equal
@@ -16,7 +18,6 @@ from bezierplan.geometry import shortest_paths
 from bezierplan.running import drives, execution, problems
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import DrivePlan, Ride
-from bezierplan.schema.checked import Fault
 from bezierplan.study import loading
 from bezierplan.study.jobs import build_chunk, build_problems_job
 
@@ -80,13 +81,12 @@ FIRST = ".......\n...#...\n.......\n...#...\n...#...\n"
 SECOND = ".......\n...#...\n...#...\n...#...\n.......\n"
 
 
-def written(folder, old="", new=""):
-    """A study in a folder, with a text of its experiments replaced."""
-    assert old in EXPERIMENTS
+def written(folder):
+    """A study in a folder."""
     home = folder / "mystudy"
     home.mkdir()
     for name, text in {
-        "experiments.yaml": EXPERIMENTS.replace(old, new),
+        "experiments.yaml": EXPERIMENTS,
         "walk.py": PLANNER,
         "first.txt": FIRST,
         "second.txt": SECOND,
@@ -95,8 +95,12 @@ def written(folder, old="", new=""):
     return home
 
 
+def build(study):
+    return problems.build_all(build_problems_job(study, "drives", "smoke"), study.folder)
+
+
 def chunk(study):
-    made, found = problems.build_all(build_problems_job(study, "drives", "smoke"), study.folder)
+    made, found = build(study)
     return execution.run_chunk(made, build_chunk(study, "drives", "mine", "smoke", 0), found)
 
 
@@ -110,9 +114,7 @@ def driven(tmp_path_factory):
 @pytest.fixture(scope="module")
 def room(driven):
     """The problem of the drives, and its world."""
-    made, found = problems.build_all(
-        build_problems_job(driven[0], "drives", "smoke"), driven[0].folder
-    )
+    made, found = build(driven[0])
     return made["across"], found["across"]
 
 
@@ -143,21 +145,24 @@ def test_equal_seeds_give_equal_drives(driven):
     assert is_equal(found.runs.iloc[0], stored)
 
 
+def resuming(folder, resumes=RESUMES):
+    """The study with a planner whose plans start from the last one."""
+    home = written(folder)
+    edit(home / "experiments.yaml", "start: centre", "start: centre, warm: true")
+    edit(home / "walk.py", PLANNER, PLANNER + resumes)
+    return loading.load([home])["mystudy"]
+
+
 def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
     """Each plan says by what it kept how many came before it; one without a path keeps nothing."""
-    home = written(tmp_path, "start: centre", "start: centre, warm: true")
-    with (home / "walk.py").open("a") as file:
-        file.write(RESUMES)
-    for run in chunk(loading.load([home])["mystudy"])[0].to_pylist():
+    for run in chunk(resuming(tmp_path))[0].to_pylist():
         assert run["evaluations"] > run["replans"] + 1 > 1
 
 
 def test_a_resume_without_a_state_is_told(tmp_path):
-    home = written(tmp_path, "start: centre", "start: centre, warm: true")
-    with (home / "walk.py").open("a") as file:
-        file.write(RESUMES.replace("evaluations=made), made", "evaluations=made)"))
+    study = resuming(tmp_path, RESUMES.replace("evaluations=made), made", "evaluations=made)"))
     with pytest.raises(RuntimeError, match=r"resume returns a Plan; expected a Plan and what"):
-        chunk(loading.load([home])["mystudy"])
+        chunk(study)
 
 
 def test_a_drive_that_is_made_again_has_the_path_of_its_row(driven, room):
@@ -180,11 +185,9 @@ def test_a_replayed_drive_is_drawn_at_its_moments(driven, tmp_path):
 
 
 def test_files_of_problems_keep_the_world(driven, tmp_path):
-    study, _ = driven
-    described = build_problems_job(study, "drives", "smoke")
-    made, found = problems.build_all(described, study.folder)
+    made, found = build(driven[0])
     file = str(tmp_path / "drives.parquet")
-    problems.write(made, described.homes, file, found)
+    problems.write(made, {"across": "room"}, file, found)
     before, moving = problems.read(file)
     assert moving["across"].workspace(3).occupied[2, 3]
     assert not before["across"].workspace.occupied[2, 3]
@@ -238,19 +241,20 @@ def test_files_of_problems_keep_the_world(driven, tmp_path):
     ],
 )
 def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
-    with pytest.raises(Fault) as fault:
-        loading.load([written(tmp_path, old, new)])
-    assert told in str(fault.value)
-    assert "\n" not in str(fault.value)
+    home = written(tmp_path)
+    assert told in faults.told(home / "experiments.yaml", old, new, home)
+
+
+def a_row(room, points, times):
+    """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
+    motion = Motion(np.array(points), np.array(times, dtype=float))
+    ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 1)])
+    return drives.judge_drive(ride, True, *room)[0]
 
 
 @pytest.mark.parametrize(("end", "feasible"), [((6.5, 2.5), True), ((6.0, 2.5), False)])
 def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, end, feasible):
-    around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
-    times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
-    plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
-    ride = Ride(Motion(around, times), True, 0.0, [plan])
-    row, _ = drives.judge_drive(ride, True, *room)
+    row = a_row(room, [(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end], [0.0, 2.0, 8.0, 10.0])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -261,21 +265,10 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(room, e
 def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     room, monkeypatch, clearance, least, steps
 ):
-    points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
-    ride = Ride(
-        Motion(points, np.arange(4.0)), True, 0.0, [DrivePlan(0.0, None, 10.0, 0.0, 0.0, 1)]
-    )
     verdict = drives.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(drives.motion_check, "check", lambda motion, world: verdict)
-    row, _ = drives.judge_drive(ride, True, *room)
+    row = a_row(room, [(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)], range(4))
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
-
-
-def a_row(room, points, times):
-    """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
-    motion = Motion(np.array(points), np.array(times))
-    ride = Ride(motion, True, 0.0, [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)])
-    return drives.judge_drive(ride, True, *room)[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.

@@ -11,12 +11,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import starts
+from commands import refused
 
 from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import verification
 from bezierplan.commands import verify
-
-ROOT = Path(__file__).parents[1]
 
 PLANNER = """
 import numpy as np
@@ -139,16 +138,7 @@ high,length,mean,30,m,9.7
 
 
 def snakemake(folder, *words, study="bends"):
-    common = ["-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2"]
-    given = [
-        "--config",
-        f"studies=[{folder / study}]",
-        "--rerun-triggers",
-        "mtime",
-        "input",
-        "params",
-    ]
-    done = starts.snakemake(folder, *common, *words, *given)
+    done = starts.make(folder, study, *words, "--rerun-triggers", "mtime", "input", "params")
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
 
@@ -317,9 +307,8 @@ def test_a_map_of_one_s_own_may_be_named_like_the_template_s(tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     (tmp_path / "room.txt").write_text("....\n.##.\n....\n....\n")
     ends = ["--start", "0.5,0.5", "--target"]
-    with pytest.raises(SystemExit):
-        main(["new", "far", "--from", "room.txt", *ends, "99,3.5"])
-    assert "--target: [99.0, 3.5]: outside" in capsys.readouterr().err
+    far = refused(capsys, "new", "far", "--from", "room.txt", *ends, "99,3.5")
+    assert "--target: [99.0, 3.5]: outside" in far
     assert not (tmp_path / "far").exists()
     main(["new", "own", "--from", "room.txt", *ends, "3.5,3.5"])
     main(["check-study", "own"])

@@ -3,10 +3,11 @@
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from commands import call
+from starts import appear
 
 from bezierplan import __main__
 from bezierplan.planners import load_planner
@@ -58,11 +59,9 @@ def test_command_whose_planner_exits_says_so(ends, tmp_path, monkeypatch, capsys
         ([*PLAN, "--method", "ends.py", *TRIES], 2),
         (["check-planner", "ends.py", *TRIES], 2 if ends == "import" else 1),
     ):
-        with pytest.raises(SystemExit) as ended:
-            __main__.main(words)
-        assert ended.value.code == status
-        told = capsys.readouterr()
-        line = (told.err or told.out).splitlines()[0]
+        ended, printed, told = call(capsys, *words)
+        line = (told or printed)[0]
+        assert ended == status
         assert "ends.py" in line
         assert line.endswith("its process ended itself with exit status 0, before it was done")
 
@@ -80,10 +79,9 @@ def test_command_whose_planner_exits_says_so(ends, tmp_path, monkeypatch, capsys
 )
 def test_wrong_input_ends_every_command_with_status_2(words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
-        __main__.main(words)
-    assert ended.value.code == 2
-    assert capsys.readouterr().err
+    status, _, told = call(capsys, *words)
+    assert status == 2
+    assert told
 
 
 LIBRARIES = """
@@ -162,9 +160,7 @@ def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path, mon
         text=True,
         start_new_session=True,
     )
-    until = time.monotonic() + 120
-    while not (tmp_path / "begun").exists() and time.monotonic() < until:
-        time.sleep(0.1)
+    appear(tmp_path / "begun")
     workflow.send_signal(signal.SIGINT)
     told, _ = workflow.communicate(timeout=60)
     assert (workflow.returncode, told.splitlines()[-1]) == (

@@ -17,8 +17,13 @@ PROBLEM = {
 }
 
 
+def drawn(name="dense", described=FIELD, **changed):
+    """The field of a workspace of a name, for the problem but for some changes."""
+    return random_field.field(described, PROBLEM | changed, f"study/{name}")
+
+
 def test_a_field_is_drawn_from_its_name_alone():
-    one, again = (random_field.field(FIELD, PROBLEM, "study/dense") for _ in range(2))
+    one, again = drawn(), drawn()
     assert np.array_equal(one.occupied, again.occupied)
     for change in (
         {"layout": 1},
@@ -26,27 +31,19 @@ def test_a_field_is_drawn_from_its_name_alone():
         {"side": 120},
         {"start": [0, 100], "target": [100, 0]},
     ):
-        other = random_field.field(FIELD, PROBLEM | change, "study/dense")
-        assert not np.array_equal(one.shapes.centres[:20], other.shapes.centres[:20])
-    assert not np.array_equal(
-        one.shapes.centres, random_field.field(FIELD, PROBLEM, "study/other").shapes.centres
-    )
+        assert not np.array_equal(one.shapes.centres[:20], drawn(**change).shapes.centres[:20])
+    assert not np.array_equal(one.shapes.centres, drawn("other").shapes.centres)
 
 
 def test_nested_fields_stay_nested_where_draws_are_repeated():
     """Circles that large cut off the target in many draws, after different numbers of circles."""
     nested = FIELD | {"nested": True, "radius": 0.12}
     centres = {
-        (count, layout): random_field.field(
-            nested, PROBLEM | {"obstacles": count, "layout": layout}, "study/dense"
-        ).shapes.centres
+        (count, layout): drawn(described=nested, obstacles=count, layout=layout).shapes.centres
         for count in (17, 18)
         for layout in range(60)
     }
-    firsts = [
-        random_field.field(nested, PROBLEM | {"obstacles": 1, "layout": layout}, "study/dense")
-        for layout in range(60)
-    ]
+    firsts = [drawn(described=nested, obstacles=1, layout=layout) for layout in range(60)]
     drawn_again = [
         not np.array_equal(centres[17, layout][0], first.shapes.centres[0])
         for layout, first in enumerate(firsts)
@@ -58,16 +55,13 @@ def test_nested_fields_stay_nested_where_draws_are_repeated():
 
 def test_radius_is_a_share_of_the_side_that_is_named():
     for side, named, radius in ((100, "own", 6.0), (200, "own", 12.0), (200, 100, 6.0)):
-        field = random_field.field(
-            FIELD | {"radius_side": named},
-            PROBLEM | {"side": side, "target": [side, side], "obstacles": 5},
-            "study/dense",
-        )
+        described = FIELD | {"radius_side": named}
+        field = drawn(described=described, side=side, target=[side, side], obstacles=5)
         assert set(field.shapes.radii) == {radius}
 
 
 def test_cells_are_those_whose_centres_lie_in_circles():
-    grid = random_field.field(FIELD, PROBLEM, "study/dense")
+    grid = drawn()
     assert grid.occupied.shape == (101, 101)
     assert grid.bounds == (-0.5, 100.5, -0.5, 100.5)
     assert len(grid.shapes.radii) == 25
@@ -84,9 +78,7 @@ def test_cells_are_those_whose_centres_lie_in_circles():
 
 def test_circles_keep_clear_of_the_ends():
     for number in range(200):
-        grid = random_field.field(
-            FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5, "layout": number}, "study/dense"
-        )
+        grid = drawn(described=FIELD | {"radius": 0.025}, obstacles=5, layout=number)
         for end in ((0, 0), (100, 100)):
             assert np.hypot(*(grid.shapes.centres - end).T).min() >= 2.5 + 2
 
@@ -94,7 +86,7 @@ def test_circles_keep_clear_of_the_ends():
 def test_fields_that_cut_off_the_target_are_drawn_again():
     crowded = FIELD | {"radius": 0.11}
     for number in range(5):
-        grid = random_field.field(crowded, PROBLEM | {"layout": number}, "study/crowded")
+        grid = drawn("crowded", crowded, layout=number)
         assert np.isfinite(
             shortest_paths.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length
         )
@@ -102,17 +94,13 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
         ValueError,
         match=r"radius: 0[.]15: start and target are cut off from each other in 200 fields",
     ):
-        random_field.field(
-            FIELD | {"radius": 0.15},
-            PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]},
-            "study/walled",
-        )
+        drawn("walled", FIELD | {"radius": 0.15}, obstacles=60, side=40, target=[40, 40])
     with pytest.raises(ValueError, match="radius: no circle keeps"):
-        random_field.field(FIELD | {"radius": 1.5}, PROBLEM, "study/covered")
+        drawn("covered", FIELD | {"radius": 1.5})
 
 
 def test_ends_outside_are_told():
     with pytest.raises(
         ValueError, match=r"target: \[101, 100\]: outside the map; expected x from -0.5 to 100.5"
     ):
-        random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/dense")
+        drawn(target=[101, 100])

@@ -2,7 +2,6 @@
 
 import logging
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -78,14 +77,13 @@ def test_the_check_sees_the_polygons_and_not_the_cells():
 
 def test_rules():
     polygons = Polygons((0.0, 4.0, 0.0, 4.0), (WALL,), "m")
-    assert np.flatnonzero(raster.from_polygons(polygons, 1.0, "centre").occupied[0]).tolist() == [2]
-    assert np.flatnonzero(raster.from_polygons(polygons, 1.0, "overlap").occupied[0]).tolist() == [
-        2
-    ]
-    assert np.flatnonzero(raster.from_polygons(polygons, 0.5, "overlap").occupied[0]).tolist() == [
-        4,
-        5,
-    ]
+    for cell, rule, columns in (
+        (1.0, "centre", [2]),
+        (1.0, "overlap", [2]),
+        (0.5, "overlap", [4, 5]),
+    ):
+        row = raster.from_polygons(polygons, cell, rule).occupied[0]
+        assert np.flatnonzero(row).tolist() == columns
     # The centres of the last row and column lie outside a border that is no multiple of the cell.
     beyond = raster.from_polygons(
         replace(polygons, bounds=(0.0, 3.8, 0.0, 4.0)), 1.0, "centre"
@@ -128,13 +126,4 @@ def test_a_fine_raster_is_drawn_as_its_polygons():
 
 def test_a_workspace_that_is_no_file_is_told():
     with pytest.raises(ValueError, match=r"file: nowhere.geojson: cannot be read"):
-        files.load(
-            {
-                "kind": "raster",
-                "unit": "m",
-                "file": "nowhere.geojson",
-                "cell": 1,
-                "rule": "overlap",
-            },
-            Path(),
-        )
+        drawn("nowhere", 1, "overlap")

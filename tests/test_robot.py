@@ -7,11 +7,12 @@ import math
 import numpy as np
 import pytest
 import shapely
+from commands import refused
 from PIL import Image
+from test_plan_command import planned
 from test_workspace_files import geojson
 
 import bezierplan as bp
-from bezierplan.__main__ import main
 from bezierplan.workspaces import files, robot
 
 ARCS = 2 / 3 * robot.ARC_EXCESS
@@ -20,6 +21,13 @@ ARCS = 2 / 3 * robot.ARC_EXCESS
 
 def box(left, right, bottom, top):
     return (np.array([(left, bottom), (right, bottom), (right, top), (left, top)], dtype=float),)
+
+
+def room_with(*obstacles):
+    return bp.Polygons((0.0, 10.0, 0.0, 10.0), obstacles, "m")
+
+
+WALL = ("--start", "0.3,1", "--target", "1.7,1")
 
 
 def wall(half_length, half_width, half_height, radius):
@@ -51,20 +59,6 @@ def one_wall(kind, folder):
     return folder / "wall.geojson", ()
 
 
-def planned(capsys, *words):
-    main(["plan", *map(str, words)])
-    return {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
-
-
-def refused(capsys, *words, status=2):
-    with pytest.raises(SystemExit) as found:
-        main(["plan", *map(str, words)])
-    told = capsys.readouterr().err
-    assert found.value.code == status
-    assert told.count("\n") == 1
-    return told
-
-
 def least_distance(file, obstacles, bounds):
     """Distance of a written path from obstacles and border, by shapely."""
     points = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:3]
@@ -81,29 +75,14 @@ def least_distance(file, obstacles, bounds):
 def test_around_a_wall_the_length_is_that_of_tangents_and_arcs(capsys, tmp_path, kind, radius):
     file, options = one_wall(kind, tmp_path)
     out = tmp_path / "path.csv"
-    words = [
-        file,
-        "--start",
-        "0.3,1",
-        "--target",
-        "1.7,1",
-        "--robot-radius",
-        radius,
-        *options,
-        "--step",
-        0.001,
-        "--out",
-        out,
-    ]
+    words = [file, *WALL, "--robot-radius", radius, *options, "--step", 0.001, "--out", out]
     found = planned(capsys, *words)
     assert found["robot radius"] == f"{radius:g} m"
     assert found["feasible"] == "yes"
     length, arcs = wall(0.7, 0.05, 0.5, radius)
     assert -1e-5 < float(found["shortest path"].removesuffix(" m")) - length < arcs * ARCS + 1e-5
-    assert (
-        least_distance(out, [shapely.box(0.95, 0.5, 1.05, 1.5)], (0, 2, 0, 2))
-        >= radius - robot.TOLERANCE
-    )
+    distance = least_distance(out, [shapely.box(0.95, 0.5, 1.05, 1.5)], (0, 2, 0, 2))
+    assert distance >= radius - robot.TOLERANCE
     assert float(found["clearance"].removesuffix(" m")) == pytest.approx(radius, rel=2e-4)
 
 
@@ -121,7 +100,7 @@ def test_around_circles_the_length_is_exact():
 
 
 def test_around_a_corner_the_length_is_that_of_tangents_and_an_arc():
-    corner = bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 5, 5, 10),), "m")
+    corner = room_with(box(0, 5, 5, 10))
     answer = bp.plan(
         bp.Problem("corner", corner, (1.0, 4.0), (6.0, 9.0)), robot_radius=1.0, turning_radius=1.0
     )
@@ -170,7 +149,7 @@ def test_on_random_maps_no_written_path_comes_closer_than_the_radius(tmp_path, s
             centre + size[:, None] * [[1, 0], [-0.6, 0.9], [-0.5, -0.8]]
             for centre, size in zip(centres, reach, strict=True)
         ]
-        room = bp.Polygons((0.0, 10.0, 0.0, 10.0), tuple((ring,) for ring in rings), "m")
+        room = room_with(*((ring,) for ring in rings))
         obstacles = [shapely.Polygon(ring) for ring in rings]
         ends = (0.6, 0.6), (9.4, 9.4)
     radius = min(
@@ -191,7 +170,7 @@ def test_on_random_maps_no_written_path_comes_closer_than_the_radius(tmp_path, s
 
 
 def test_a_grown_map_is_the_same_after_it_was_stored():
-    grown = robot.grow(bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 5, 5, 10),), "m"), 0.5)
+    grown = robot.grow(room_with(box(0, 5, 5, 10)), 0.5)
     text = files.write_json(grown)
     again = files.read_json(text)
     assert files.write_json(again) == text
@@ -227,7 +206,7 @@ def test_a_planner_of_cells_keeps_the_radius_too():
 def two_walls():
     return bp.Problem(
         "walls",
-        bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 7, 3, 4), box(3, 10, 6, 7)), "m"),
+        room_with(box(0, 7, 3, 4), box(3, 10, 6, 7)),
         (1.0, 1.0),
         (9.0, 9.0),
     )
@@ -265,7 +244,6 @@ def test_way_points_are_passed_in_their_order():
     )
 
 
-WALL = ("--start", "0.3,1", "--target", "1.7,1")
 REFUSED = {
     "start": (
         (*WALL, "--robot-radius", "0.4"),
@@ -298,4 +276,4 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_is_told_in_one_line(capsys, tmp_path, name):
     words, told = REFUSED[name]
-    assert told in refused(capsys, one_wall("geojson", tmp_path)[0], *words)
+    assert told in refused(capsys, "plan", one_wall("geojson", tmp_path)[0], *words)

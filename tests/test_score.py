@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from commands import refused
 
 import bezierplan as bp
 from bezierplan.__main__ import main
@@ -73,9 +74,7 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
 def test_a_file_of_paths_that_cannot_be_scored_is_told_in_one_line(text, word, tmp_path, capsys):
     file = tmp_path / "paths.csv"
     file.write_text(text)
-    with pytest.raises(SystemExit):
-        main(["score", "song2016/routes", str(file)])
-    (line,) = capsys.readouterr().err.splitlines()
+    line = refused(capsys, "score", "song2016/routes", file)
     assert word in line
     assert str(file) in line
 

@@ -30,28 +30,31 @@ def circles(*rows, pace=1.0, end=100):
     """A field of 20 x 20 with circles (x, y, radius, x velocity, y velocity)."""
     table = np.array(rows, dtype=float).reshape(-1, 5)
     square = (0.0, 20.0, 0.0, 20.0)
-    return MovingCircles(
-        square,
-        square,
-        table[:, :2].copy(),
-        table[:, 3:].copy(),
-        table[:, 2].copy(),
-        "circles",
-        pace,
-        end,
-        "m",
-    )
+    centres, radii, velocities = table[:, :2], table[:, 2], table[:, 3:]
+    return MovingCircles(square, square, centres, velocities, radii, "circles", pace, end, "m")
+
+
+def collides(motion, world):
+    return not math.isnan(motion_check.check(motion, world).collision_at)
+
+
+def draw_maps(*drawn):
+    """Maps of cells of 1 m, each drawn in lines."""
+    return tuple(from_lines(lines, 1.0, "m") for lines in drawn)
 
 
 def across(world, start=(0.0, 10.0), target=(20.0, 10.0)):
     return Problem("across", world.workspace(0), start, target)
 
 
+def go_through(*points):
+    """A plan through some points."""
+    return Plan.of_one(Path("polyline", np.array(points)), 1.0, "exact")
+
+
 def straight(problem, state):
     """A planner that always goes straight."""
-    points = np.array([problem.start, problem.target])
-    length = math.dist(*points)
-    return Plan(Path("polyline", points), length, True, 1, np.array([length]), "exact", {}), state
+    return go_through(problem.start, problem.target), state
 
 
 def round_about(problem, state):
@@ -59,15 +62,12 @@ def round_about(problem, state):
     beside it.
     """
     for middle in (10.0, 16.0, 4.0):
-        points = np.array(
-            [problem.start, ((problem.start[0] + problem.target[0]) / 2, middle), problem.target]
-        )
-        home = problem.workspace
+        between = (problem.start[0] + problem.target[0]) / 2, middle
+        plan, home = go_through(problem.start, between, problem.target), problem.workspace
         bare = circles(*((x, y, r, 0, 0) for (x, y), r in zip(home.centres, home.radii)))
-        motion = Motion(points, np.array([0.0, 0.5, 1.0]))
-        if math.isnan(motion_check.check(motion, bare).collision_at):
-            return Plan(Path("polyline", points), 0.0, True, 1, np.zeros(1), "exact", {}), state
-    return Plan(None, math.inf, False, 1, np.zeros(1), "none", {}), state
+        if not collides(Motion(plan.path.points, np.array([0.0, 0.5, 1.0])), bare):
+            return plan, state
+    return Plan.of_one(None, math.inf, "none"), state
 
 
 # Worlds
@@ -80,11 +80,12 @@ def test_a_circle_is_where_step_by_step_reflection_takes_it(x, velocity, steps):
         position += speed
         while not 0 <= position <= 10:
             position, speed = (-position, -speed) if position < 0 else (20 - position, -speed)
-    found = worlds.positions(
-        np.array([[x, 5.0]]), np.array([[velocity, 0.0]]), np.array([0.0, 10.0, 0.0, 10.0]), steps
+    walls = np.array([0.0, 10.0, 0.0, 10.0])
+    ((there, up),) = worlds.positions(
+        np.array([[x, 5.0]]), np.array([[velocity, 0.0]]), walls, steps
     )
-    assert found[0, 0] == pytest.approx(position, abs=1e-9)
-    assert found[0, 1] == 5.0
+    assert there == pytest.approx(position, abs=1e-9)
+    assert up == 5.0
 
 
 # The exact check
@@ -103,25 +104,22 @@ def test_grazing_collisions_between_steps_are_found(excess, hits, at):
     meeting = robot + at * velocity + (1.0 + excess) * normal
     world = circles((*(meeting - at * circle), 1.0, *circle))
     points = robot + np.array([[0.0], [7.0]]) * velocity
-    found = motion_check.check(Motion(points, np.array([0.0, 7.0])), world)
-    assert math.isnan(found.collision_at) != hits
-    assert found.clearance[3] == pytest.approx(excess, abs=1e-9)
+    verdict = motion_check.check(Motion(points, np.array([0.0, 7.0])), world)
+    assert math.isnan(verdict.collision_at) != hits
+    assert verdict.clearance[3] == pytest.approx(excess, abs=1e-9)
     if hits:
         # Where the quadratic first falls to the radius: half a chord before the closest approach.
-        assert found.collision_at == pytest.approx(
+        assert verdict.collision_at == pytest.approx(
             at - math.sqrt(1 - (1 + excess) ** 2) / np.hypot(*relative), abs=1e-5
         )
 
 
 def test_cells_collide_only_while_they_are_occupied():
-    maps = tuple(
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], ["....", ".##.", "...."])
-    )
+    maps = draw_maps(["....", "....", "...."], ["....", ".##.", "...."])
     world = ChangingCells(maps, np.array([2.0]), 1.0, 9)
     line = np.array([[0.5, 1.5], [3.5, 1.5]])
     early, late = (Motion(line, np.array(times)) for times in ([0.0, 2.0], [1.5, 3.0]))
-    assert math.isnan(motion_check.check(early, world).collision_at)
+    assert not collides(early, world)
     # At the change it stands at x = 1.5, in a cell that becomes occupied.
     assert motion_check.check(late, world).collision_at == pytest.approx(2.0)
     # One cell is occupied when it comes.
@@ -137,7 +135,7 @@ def test_a_blind_robot_drives_on_and_a_waiting_one_lets_the_circle_pass():
     world = circles((10, 4, 2, 0, 0.5))
     blind, waiting = (drive(world, across(world), policy, straight) for policy in (BLIND, WAITS))
     assert blind.arrived
-    assert not math.isnan(motion_check.check(blind.motion, world).collision_at)
+    assert collides(blind.motion, world)
     assert (blind.waited, blind.replans) == (0.0, 0)
     assert waiting.arrived
     assert waiting.waited > 0
@@ -150,7 +148,7 @@ def test_a_robot_that_plans_again_drives_round_a_circle_that_comes_into_its_way(
     ride = drive(world, across(world), REPLANS, round_about)
     assert ride.arrived
     assert ride.replans >= 1
-    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+    assert not collides(ride.motion, world)
     lengths = np.hypot(*np.diff(ride.motion.points, axis=0).T)
     assert (lengths <= np.diff(ride.motion.times) + 1e-9).all()  # never faster than the pace
 
@@ -201,9 +199,7 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
 
 
 # A cell in the middle becomes occupied.
-HIT = tuple(
-    from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."])
-)
+HIT = draw_maps(["....", "....", "...."], ["....", "..#.", "...."])
 
 
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
@@ -221,11 +217,8 @@ def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
 
 def around(problem, state):
     """A planner that goes through the upper row of cells."""
-    points = np.array(
-        [problem.start, (problem.start[0], 2.5), (problem.target[0], 2.5), problem.target]
-    )
-    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
-    return Plan(Path("polyline", points), length, True, 1, np.array([length]), "exact", {}), state
+    start, target = problem.start, problem.target
+    return go_through(start, (start[0], 2.5), (target[0], 2.5), target), state
 
 
 def change_on_the_spot():
@@ -233,7 +226,7 @@ def change_on_the_spot():
     2, after it drove without a pause.
     """
     world = ChangingCells(HIT, np.array([2.0]), 1.0, 30)
-    return world, Problem("across", HIT[0], (0.5, 1.5), (3.5, 1.5))
+    return world, across(world, (0.5, 1.5), (3.5, 1.5))
 
 
 def first_straight(problem, state):
@@ -268,12 +261,11 @@ def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
     ("replan", "replans"), [("never", 0), ("when_blocked", 0), ("when_changed", 2)]
 )
 def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, replans):
-    lines = (["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
-    maps = tuple(from_lines(each, 1.0, "m") for each in lines)
+    maps = draw_maps(["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
     world = ChangingCells(maps, np.array([0.8, 2.0]), 1.0, 30)
     ride = drive(
         world,
-        Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5)),
+        across(world, (0.5, 1.5), (3.5, 1.5)),
         BLIND.but(replan=replan, waits=True),
         straight,
     )
@@ -296,7 +288,7 @@ def test_a_robot_drives_along_a_plan_that_touches_a_circle(planner, replan):
     world = circles((10, 10.3, 2, 0, 0))
     ride = drive(world, across(world), WAITS.but(replan=replan), planner)
     assert (ride.arrived, ride.waited) == (True, 0.0)
-    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+    assert not collides(ride.motion, world)
 
 
 @pytest.mark.parametrize("replan", ["never", "when_blocked"])
@@ -305,12 +297,12 @@ def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
     world = ChangingCells((grid,), np.empty(0), 1.0, 60)
     ride = drive(
         world,
-        Problem("across", grid, (0.5, 2.5), (8.5, 2.5)),
+        across(world, (0.5, 2.5), (8.5, 2.5)),
         BLIND.but(replan=replan, waits=True),
         rounded,
     )
     assert (ride.arrived, ride.waited) == (True, 0.0)
-    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+    assert not collides(ride.motion, world)
 
 
 def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
@@ -326,10 +318,10 @@ def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
 # What no robot can beat
 
 
-def gate(start, moment, *patterns):
-    maps = tuple(from_lines([pattern] * 3, 1.0, "m") for pattern in patterns)
+def gate(moment, *patterns):
+    maps = draw_maps(*([pattern] * 3 for pattern in patterns))
     world = ChangingCells(maps, np.array([moment]), 1.0, 20)
-    return world, Problem("gate", maps[0], start, (7.5, 1.5))
+    return world, across(world, (0.5, 1.5), (7.5, 1.5))
 
 
 def test_circles_that_stand_bound_the_way_and_those_that_move_do_not():
@@ -342,32 +334,32 @@ def test_circles_that_stand_bound_the_way_and_those_that_move_do_not():
 def test_a_change_that_no_robot_can_meet_before_leaves_the_new_map_alone():
     """The wall is 3.5 away: a robot can be there by step 3.5."""
     for moment, least in [(3.4, math.inf), (3.5, math.inf), (3.6, 7.0)]:
-        closes, problem = gate((0.5, 1.5), moment, "........", "....#...")
+        closes, problem = gate(moment, "........", "....#...")
         assert bounds.bound_arrival(closes, problem) == least
         assert bounds.find_least_way(closes, problem).length == 7.0
-    opens, problem = gate((0.5, 1.5), 2.0, "....#...", "........")
+    opens, problem = gate(2.0, "....#...", "........")
     assert bounds.bound_arrival(opens, problem) == 7.0
 
 
 # Stepping aside
 
+FORESEES = REPLANS.but(knows="velocities")
+
 
 def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
     coming = circles((10, 6.4, 2, 0, 0.5))
     place = np.array([10.0, 9.0])
-    aside = evasion.find_refuge(coming, place, 0, REPLANS.but(knows="velocities"))
+    aside = evasion.find_refuge(coming, place, 0, FORESEES)
     assert math.dist(aside, place) == pytest.approx(1.0)
     assert aside[1] > 9.0
     passing = circles((10, 6.0, 2, 0.5, -0.2))
-    assert np.array_equal(
-        evasion.find_refuge(passing, place, 0, REPLANS.but(knows="velocities")), place
-    )
+    assert np.array_equal(evasion.find_refuge(passing, place, 0, FORESEES), place)
 
 
 def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
     chasing = circles((6, 10, 2, 0.9, 0))
     place = np.array([9.0, 10.0])
-    aside = evasion.find_refuge(chasing, place, 0, REPLANS.but(knows="velocities"))
+    aside = evasion.find_refuge(chasing, place, 0, FORESEES)
     assert abs(aside[1] - place[1]) > 0.3
 
 
@@ -380,7 +372,7 @@ def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     )
     hit = motion_check.check(waiting.motion, world)
     assert hit.collision_at > 0
-    assert math.isnan(motion_check.check(evading.motion, world).collision_at)
+    assert not collides(evading.motion, world)
     lengths = np.hypot(*np.diff(evading.motion.points, axis=0).T)
     assert lengths.max() <= 1.0 + 1e-9
     assert lengths.sum() > 0

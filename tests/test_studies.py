@@ -40,11 +40,8 @@ def test_audit_of_song2016():
     (row,) = rows
     assert (row["printed"], row["consistent"]) == (8, True)
     late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
-    assert (
-        len(faults(rules.check_rules(published("song2016") | {"table1": late})))
-        == (late["value"] == 101).sum()
-        > 0
-    )
+    found = faults(rules.check_rules(published("song2016") | {"table1": late}))
+    assert len(found) == (late["value"] == 101).sum() > 0
 
 
 def test_chaotic_sequences():
@@ -87,14 +84,19 @@ FIXED = {
 }
 
 
+def fitness(points, world=None):
+    """Of a curve from start to target with some control points between them, on a map of the study
+    unless told otherwise.
+    """
+    path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
+    return tharwat2018.compute_fitness(path, world or problem("equal"), SAMPLES, BETA)[0]
+
+
 @pytest.mark.parametrize("name", FIXED)
 @pytest.mark.parametrize(("world", "column"), [("equal", 2), ("public", 3)])
 def test_fitness(name, world, column):
     x, y, *_ = FIXED[name]
-    path = np.array([[(0, 0), *zip(x, y), (4, 6)]], dtype=float)
-    assert tharwat2018.compute_fitness(path, WORLDS[world], SAMPLES, BETA)[0] == pytest.approx(
-        FIXED[name][column], abs=2e-6
-    )
+    assert fitness(zip(x, y), WORLDS[world]) == pytest.approx(FIXED[name][column], abs=2e-6)
 
 
 def test_fitness_is_that_of_the_planner():
@@ -105,28 +107,19 @@ def test_fitness_is_that_of_the_planner():
             np.random.default_rng(seed),
             **settings | {"particles": 5, "iterations": 2},
         )
-        assert tharwat2018.compute_fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[
-            0
-        ] == pytest.approx(plan.objective, rel=1e-12)
+        assert fitness(plan.path.points[1:-1]) == pytest.approx(plan.objective, rel=1e-12)
 
 
 def test_best_known_curve():
-    path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN, (4, 6)]], dtype=float)
     # Its coordinates are rounded.
-    assert tharwat2018.compute_fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
-        9.3436, abs=3e-4
-    )
+    assert fitness(tharwat2018.BEST_KNOWN) == pytest.approx(9.3436, abs=3e-4)
 
 
 def test_local_minima():
     bowl = np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)
     assert np.argwhere(tharwat2018.find_local_minima(bowl)).tolist() == [[4, 3]]
-    assert (
-        tharwat2018.find_local_minima(
-            -np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)
-        ).sum()
-        == 4
-    )
+    ridges = np.array([0.0, 1.0, 0.0, 1.0, 0.0])
+    assert tharwat2018.find_local_minima(-np.outer(ridges, ridges)).sum() == 4
     assert not tharwat2018.find_local_minima(np.zeros((5, 5))).any(), "not strict"
 
 
@@ -146,6 +139,11 @@ def test_nodes_of_one_valley_are_one_minimum():
     )
 
 
+def results_of(runs):
+    """Results of the experiment `maps` with some rows."""
+    return Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
+
+
 def on_maps(where):
     """A check on the experiment `maps`, as far as a function of the study asks it."""
     return SimpleNamespace(experiment="maps", where=where)
@@ -155,19 +153,8 @@ def test_landscape():
     """Numbers of an independent computation; the correlation is that of
     `bowl_with_local_minima`.
     """
-    runs = pd.DataFrame(
-        [
-            {
-                "planner": "chaotic_pso",
-                "drew": True,
-                "problem": "equal",
-                "workspace": "equal",
-                "samples": SAMPLES,
-                "beta": BETA,
-            }
-        ]
-    )
-    found = Results(runs, {"equal": problem("equal")}, pd.DataFrame())
+    known = {"planner": "chaotic_pso", "drew": True, "problem": "equal", "workspace": "equal"}
+    found = results_of([known | {"samples": SAMPLES, "beta": BETA}])
     surface = tharwat2018.compute_landscape(found)
     side = tharwat2018.GRID
     assert len(surface) == side**2
@@ -177,10 +164,7 @@ def test_landscape():
     place = surface.iloc[[17 * side + 150]]
     points = np.array(tharwat2018.BEST_KNOWN)
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
-    path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
-    assert tharwat2018.compute_fitness(path, problem("equal"), SAMPLES, BETA)[0] == pytest.approx(
-        place["objective"].iloc[0], rel=1e-12
-    )
+    assert fitness(points) == pytest.approx(place["objective"].iloc[0], rel=1e-12)
     check = on_maps({"workspace": "equal"})
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
@@ -206,16 +190,10 @@ WAYS = {
 }
 
 
-def run(way, feasible=True, curve="bezier", length=8.0):
-    points = [(0, 0), *WAYS[way], (4, 6)]
-    flat = [float(number) for point in points for number in point]
-    return {
-        "problem": "equal",
-        "feasible": feasible,
-        "path_curve": curve,
-        "path_points": flat,
-        "length": length,
-    }
+def run(way, feasible=True, length=8.0):
+    points = np.ravel([(0, 0), *WAYS[way], (4, 6)]).astype(float).tolist()
+    path = {"path_curve": "bezier", "path_points": points, "length": length}
+    return {"problem": "equal", "feasible": feasible} | path
 
 
 def test_homotopy_class():
@@ -251,7 +229,7 @@ def test_homotopy_class():
 )
 def test_several_homotopy_classes(runs, mark, classes, counted):
     check = on_maps({"feasible": True})
-    found = Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
+    found = results_of(runs)
     assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (
         mark,
         classes,
@@ -373,7 +351,7 @@ def test_methods_of_tharwat2018():
 @pytest.mark.parametrize("key", KEYS)
 def test_study_is_free_of_faults(key):
     """All checks pass, and no test has changed the copy that all of them share."""
-    study = loading.read_study(STUDIES / key)
+    study = loading.load([STUDIES / key])[key]
     assert not checks.Checks(study).check()
     assert study == shared(key)
 

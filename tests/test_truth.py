@@ -2,14 +2,10 @@
 planner, in one line; no table shows them.
 """
 
-from pathlib import Path
-
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 import starts
-
-ROOT = Path(__file__).parents[1]
 
 PLANNER = """
 import os
@@ -127,17 +123,6 @@ def written(home, planners):
     (home / "artefacts.yaml").write_text(ARTEFACTS)
 
 
-def words_of(folder, *words):
-    """What Snakemake is started with to make something of the study `liars` in a folder."""
-    common = ["-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    return [*common, *words, "--config", f"studies=[{folder / 'liars'}]"]
-
-
-def snakemake(folder, *words, **options):
-    """Make something of the study `liars` in a folder."""
-    return starts.snakemake(folder, *words_of(folder, *words), **options)
-
-
 @pytest.fixture(scope="module")
 def ended(tmp_path_factory):
     """The folder in which a study of liars was run as far as it goes, and what the workflow
@@ -146,8 +131,11 @@ def ended(tmp_path_factory):
     folder = tmp_path_factory.mktemp("truth")
     deeds = {name: (work, answer) for name, (work, answer, _) in DEEDS.items()}
     written(folder / "liars", {"honest": ("", "answer")} | deeds)
-    return folder, snakemake(
-        folder, *(f"{TABLES}/{name}.csv" for name in ("all", "driven", "honest")), "--keep-going"
+    return folder, starts.make(
+        folder,
+        "liars",
+        *(f"{TABLES}/{name}.csv" for name in ("all", "driven", "honest")),
+        "--keep-going",
     )
 
 
@@ -196,7 +184,7 @@ def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended):
     for made in folder.glob(f"{TABLES}/honest*"):
         made.unlink()
     try:
-        done = snakemake(folder, f"{TABLES}/honest.csv", "--rerun-triggers", "mtime")
+        done = starts.make(folder, "liars", f"{TABLES}/honest.csv", "--rerun-triggers", "mtime")
     finally:
         file.write_bytes(sound)
     assert done.returncode == 1
@@ -210,7 +198,7 @@ def test_a_file_that_ends_the_start_is_told_before_any_job(tmp_path):
     written(tmp_path / "liars", {"honest": ("", "answer")})
     file = tmp_path / "liars" / "honest.py"
     file.write_text(f"{file.read_text()}\nos._exit(0)\n")
-    done = snakemake(tmp_path, f"{TABLES}/honest.csv")
+    done = starts.make(tmp_path, "liars", f"{TABLES}/honest.csv")
     assert done.returncode == 2
     told = (done.stdout + done.stderr).splitlines()
     (line,) = [line for line in told if not line.startswith("Config file ")]

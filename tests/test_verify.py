@@ -16,14 +16,15 @@ import pyarrow.parquet as parquet
 import pytest
 import starts
 from chunks import CHUNK, CLAIMS, MADE
+from commands import call
 from trees import edit
 
-from bezierplan.__main__ import main
 from bezierplan.analysis.outcome import verification
 from bezierplan.machine import digest
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, recheck, table_files
 from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.running.simulation.policy import Policy
 from bezierplan.study import stored
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -81,9 +82,7 @@ def original(tmp_path_factory):
     code = {"bend.py": BEND.format(seed=""), "place.py": "MIDDLE = 5.0\n"}
     for name, text in (STUDY | code).items():
         (study / name).write_text(text)
-    words = ("--snakefile", str(TREE / "Snakefile"), "--config", 'studies=["./bend"]')
-    words += ("--cores", "2", "--workflow-profile", "none")
-    done = starts.snakemake(folder, "smoke", *words)
+    done = starts.make(folder, "bend", "smoke")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -100,23 +99,15 @@ def verified(capsys, *words):
     """The status of the command, and the lines that it printed, and those about faults."""
     for known in vars(digest).values():
         getattr(known, "cache_clear", int)()  # as in a process of its own
-    try:
-        main(["verify", *map(str, words), "--cores", "1"])
-        status = 0
-    except SystemExit as end:
-        status = end.code
-    printed = capsys.readouterr()
-    return status, printed.out.splitlines(), printed.err.splitlines()
+    return call(capsys, "verify", *words, "--cores", 1)
 
 
 def edited(file, column, change):
-    """Change a column of a file by a function of its list; with a digest like an honest file."""
+    """Change each value of a column of a file; with a digest like an honest file."""
     table = parquet.read_table(file)
     place = table.column_names.index(column)
-    changed = table.set_column(
-        place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
-    )
-    table_files.write(changed, str(file))
+    values = pa.array([*map(change, table[column].to_pylist())], table.schema.field(column).type)
+    table_files.write(table.set_column(place, column, values), str(file))
 
 
 def listed(folder, name):
@@ -192,7 +183,7 @@ def test_a_list_that_is_none_and_a_missing_file_are_told_and_the_proof_goes_on(r
 def test_a_claim_or_a_bound_that_was_edited_together_with_the_list_is_named(results, capsys):
     """And so are the list, of which the page has the digest, and the page, which no list has."""
     bounds, claims = "bend/problems/bends.bounds.parquet", "bend/claims.csv"
-    edited(results / bounds, "bound", lambda values: [value + 0.1 for value in values])
+    edited(results / bounds, "bound", lambda value: value + 0.1)
     listed(results, bounds)
     edit(results / claims, "shorter", "longer")
     listed(results, claims)
@@ -334,27 +325,14 @@ MET = {
     "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
     "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
 }
-MOVES = {
-    "replan": "when_changed",
-    "every": 1,
-    "warm": False,
-    "waits": False,
-    "evades": False,
-    "start": "position",
-    "brake": 1.0,
-}
-SEES = {
-    "sees": "before",
-    "knows": "positions",
-    "check_margin": 0.0,
-    "plan_margins": [0.0],
-    "horizon": 2.0,
-}
+POLICY = Policy(
+    replan="when_changed", waits=False, brake=1.0, horizon=2.0, spacing=0.1, step_seconds=1.0
+)
 DRIVES = CHUNK._replace(
     experiment="d",
     planner="shortest_path",
     problems={name: {"workspace": "field"} for name in MET},
-    policy=MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0},
+    policy=POLICY.model_dump(),
 )
 
 
@@ -392,23 +370,19 @@ def test_runs_and_drives_are_sound_and_can_be_made_again(each):
 
 
 EDITS: dict[tuple[str, str, str], Callable] = {
-    ("e", "feasible", "feasible"): lambda values: [True] * len(values),
-    ("e", "length", "length"): lambda values: [value - 1e-6 for value in values],
-    ("e", "clearance", "clearance"): lambda values: [value + 1e-7 for value in values],
-    ("e", "path_points", "length"): lambda values: [[1.0, 8.0, 5.0, 9.0, 9.0, 8.0]] * len(values),
-    ("e", "path_points", "path_points"): lambda values: [
-        [*points[:-1], points[-1] + 0.5] for points in values
-    ],
-    ("e", "path_curve", "path_points"): lambda values: [""] * len(values),
-    ("e", "repeat", "repeat"): lambda values: [value + 1 for value in values],
-    ("e", "method", "method"): lambda values: ["other"] * len(values),
-    ("e", "generations", "generations"): lambda values: [7] * len(values),
-    ("d", "arrival", "objective"): lambda values: [value - 1.0 for value in values],
-    ("d", "length", "length"): lambda values: [value - 1.0 for value in values],
-    ("d", "feasible", "feasible"): lambda values: [not value for value in values],
-    ("d", "path_points", "length"): lambda values: [
-        [*points[:2], 5.0, 9.0, *points[2:]] for points in values
-    ],
+    ("e", "feasible", "feasible"): lambda value: True,
+    ("e", "length", "length"): lambda value: value - 1e-6,
+    ("e", "clearance", "clearance"): lambda value: value + 1e-7,
+    ("e", "path_points", "length"): lambda points: [1.0, 8.0, 5.0, 9.0, 9.0, 8.0],
+    ("e", "path_points", "path_points"): lambda points: [*points[:-1], points[-1] + 0.5],
+    ("e", "path_curve", "path_points"): lambda value: "",
+    ("e", "repeat", "repeat"): lambda value: value + 1,
+    ("e", "method", "method"): lambda value: "other",
+    ("e", "generations", "generations"): lambda value: 7,
+    ("d", "arrival", "objective"): lambda value: value - 1.0,
+    ("d", "length", "length"): lambda value: value - 1.0,
+    ("d", "feasible", "feasible"): lambda value: not value,
+    ("d", "path_points", "length"): lambda points: [*points[:2], 5.0, 9.0, *points[2:]],
 }
 
 
@@ -445,8 +419,8 @@ def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, cas
 @pytest.mark.parametrize(
     ("name", "column", "change"),
     [
-        ("e", "history", lambda values: [[each[0] / 2] for each in values]),
-        ("d", "steps", lambda values: [value + 1 for value in values]),
+        ("e", "history", lambda values: [values[0] / 2]),
+        ("d", "steps", lambda value: value + 1),
     ],
 )
 def test_what_no_path_tells_shows_when_a_run_is_made_again(tasks, tmp_path, name, column, change):

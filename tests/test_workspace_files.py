@@ -43,10 +43,7 @@ def moved(x, y):
 
 def feature(properties, geometry):
     """A GeoJSON file with a border and one further feature."""
-    border = {
-        "properties": {"role": "border"},
-        "geometry": {"type": "Polygon", "coordinates": [BORDER]},
-    }
+    (border,) = json.loads(geojson())["features"]
     return json.dumps({"features": [border, {"properties": properties, "geometry": geometry}]})
 
 
@@ -221,13 +218,17 @@ GRID_FAULTS = {
 }
 
 
+def load_cells(folder, cell=1.0):
+    return files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder))
+
+
 @pytest.mark.parametrize("fault", GRID_FAULTS)
 def test_map_fault_is_told(fault, tmp_path):
     content, told = GRID_FAULTS[fault]
     if content is not None:
         (tmp_path / "map").write_bytes(content)
     with pytest.raises(ValueError, match=told) as caught:
-        files.load({"kind": "grid", "unit": "m", "file": "map", "cell": 1.0}, tmp_path)
+        load_cells(tmp_path)
     assert "map: " in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -236,7 +237,7 @@ def test_map_fault_is_told(fault, tmp_path):
 def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
     (tmp_path / "map").write_text("..\n")
     with pytest.raises(ValueError, match=r"map: cell: .*: the border: .* is not a coordinate"):
-        files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, tmp_path)
+        load_cells(tmp_path, cell)
 
 
 @pytest.mark.parametrize(
@@ -266,12 +267,7 @@ def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(
 ):
     thickness = 10**exponent
     shapes = {
-        "wall": [
-            (-length, -thickness),
-            (length, -thickness),
-            (length, thickness),
-            (-length, thickness),
-        ],
+        "wall": [(x * length, y * thickness) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
         "wedge": [(-length, -2 * thickness), (2 * length, 0), (-length, 2 * thickness)],
         "cap": [(-length, -thickness), (length, -thickness), (0, 2 * thickness)],
     }
@@ -294,9 +290,7 @@ def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(expone
     with TemporaryDirectory() as folder:
         (Path(folder) / "map").write_text("....\n.##.\n.##.\n....\n")
         try:
-            found = files.load(
-                {"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder)
-            )
+            found = load_cells(folder, cell)
         except ValueError:
             assert cell < 1e-6
             return
@@ -355,17 +349,16 @@ def test_text_gives_a_workspace_back_bit_by_bit(description):
 
 
 RANDOM = {"bounds": [-10, 10, -10, 10], "radius": 2.0, "circles": 10, "unit": "unit"}
+PLACE = {"start": [0, 0], "target": [4, 6], "obstacles": 10, "layout": 0}
 
 
-def test_layout_depends_on_its_names_alone_and_is_nested():
-    one, again = (
-        random_circles.layout(RANDOM, "study/random", 3, [(0, 0), (4, 6)]) for _ in range(2)
+def test_layout_depends_on_its_names_alone():
+    one, again, other = (
+        random_circles.draw(RANDOM, PLACE | {"layout": number}, "study/random").centres
+        for number in (3, 3, 4)
     )
-    assert np.array_equal(one.centres, again.centres)
-    assert np.array_equal(random_circles.first(one, 4).centres, one.centres[:4])
-    assert not np.array_equal(
-        one.centres, random_circles.layout(RANDOM, "study/random", 4, [(0, 0), (4, 6)]).centres
-    )
+    assert np.array_equal(one, again)
+    assert not np.array_equal(one, other)
 
 
 def test_problems_in_random_circles_have_free_ends():
@@ -384,6 +377,11 @@ def test_problems_in_random_circles_have_free_ends():
             assert np.hypot(*(problem.workspace.centres - end).T).min() > 5.0
 
 
+def test_bounds_of_random_circles_beyond_all_coordinates_are_told():
+    with pytest.raises(ValueError, match=r"^bounds: 200000 is not a coordinate"):
+        random_circles.draw(RANDOM | {"bounds": [0, 2e5, 0, 10]}, PLACE, "study/random")
+
+
 def test_layout_that_cannot_be_drawn_is_given_up():
     with pytest.raises(ValueError, match="radius: no circle keeps 40 away from start and target"):
-        random_circles.layout(RANDOM | {"radius": 40.0}, "study/random", 0, [(0, 0), (4, 6)])
+        random_circles.draw(RANDOM | {"radius": 40.0}, PLACE, "study/random")

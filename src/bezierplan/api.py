@@ -26,11 +26,12 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running.answer import read_path
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import check_all, check_known, describe_known
+from bezierplan.schema.checked import check_all, check_known
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
 from bezierplan.workspaces.grown import original
+from bezierplan.workspaces.kinds import naming
 from bezierplan.workspaces.limits import Place
 from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
@@ -682,10 +683,8 @@ def plan_all(
     ends = ["start_x", "start_y", "target_x", "target_y"]
     check_all(ends, rows, f"{file}: column")
     for number, (a, b, c, d) in enumerate(rows[ends].to_numpy().tolist(), 1):
-        try:
+        with naming(f"{file}: row {number}"):
             made.append(plan(Problem("", workspace, (a, b), (c, d)), method, **options))
-        except ValueError as fault:
-            raise ValueError(f"{file}: row {number}: {fault}") from None
     names = ["feasible", "length", "shortest", "clearance", "curvature", "cpu_s"]
     return rows.join(pd.DataFrame(map(vars, made), columns=names))
 
@@ -755,9 +754,7 @@ def find_method(method: str) -> tuple[str, dict[str, Any]]:
         if each and (_find_folder(each) / "experiments.yaml").is_file()
     ]
     known = [f"{study}/{each}" for study in studies for each in _read_study(study).methods]
-    if f"{key}/{name}" not in known:
-        known = known or [*_list_planners(), *list_planners()]
-        raise ValueError(f"method: {method}: unknown{describe_known(method, known)}")
+    check_known(method, known or [*_list_planners(), *list_planners()], "method")
     return _read_study(key).planner(name), _read_study(key).resolve_settings(name)
 
 

@@ -19,9 +19,9 @@ _OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
 K = TypeVar("K", bound=Callable[..., Any])
 
 
-def _compile_kernel(function: K, **options: Any) -> K:
-    """Compile a function with the options of all kernels and some more, kept in this package's own
-    cache.
+def compile_kernel(function: K, **options: Any) -> K:
+    """Compile a function as `njit` does, with the options of all kernels and some more, and keep it
+    in this package's own cache.
 
     Where numba compiles nothing, return the function itself.
     """
@@ -30,11 +30,6 @@ def _compile_kernel(function: K, **options: Any) -> K:
     kernel = Kernel(function, targetoptions=_OPTIONS | options)
     kernel.enable_caching()
     return kernel
-
-
-def compile_kernel(kernel: K) -> K:
-    """Compile a function by `njit` with the options of all kernels."""
-    return _compile_kernel(kernel)
 
 
 def allocation_free(kernel: K) -> K:
@@ -46,7 +41,7 @@ def allocation_free(kernel: K) -> K:
     """
     # The flag, which numba documents in `numba.extending.register_jitable`, leaves out its run-time
     # library, which allocates and counts.
-    return _compile_kernel(kernel, _nrt=False)
+    return compile_kernel(kernel, _nrt=False)
 
 
 def compile_inline(kernel: K) -> K:

@@ -5,14 +5,16 @@ parent of every descendant that loses its own, and waits for all. On systems oth
 waits for the command alone, and what the command itself does not wait for is not counted.
 """
 
+import ctypes
 import os
 import subprocess
 import sys
 from contextlib import suppress
 
-from bezierplan.running.jobs.watchdog import adopt_descendants
+PR_SET_CHILD_SUBREAPER = 36
 
-adopt_descendants()
+if sys.platform == "linux":
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
 STATUS = subprocess.call(sys.argv[1:])
 with suppress(ChildProcessError):
     while True:

@@ -108,7 +108,7 @@ def ratio(work: Work, cold: bool = False) -> float:
 
 def study(key: str) -> Study:
     """A study of this project."""
-    return loading.read_study(STUDIES / key)
+    return loading.load([STUDIES / key])[key]
 
 
 def studies() -> list[Study]:

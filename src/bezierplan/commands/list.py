@@ -11,7 +11,7 @@ from bezierplan.commands import find_study_path, is_study, read_studies
 from bezierplan.figures import panels
 from bezierplan.figures.page import sort_as_printed
 from bezierplan.planners import list_planners, load_planner, read_settings
-from bezierplan.schema.checked import check_known
+from bezierplan.schema.checked import check_all
 from bezierplan.study.definition import Study
 from bezierplan.workspaces import kinds as workspace_kinds
 
@@ -37,8 +37,7 @@ def main(*words: str) -> None:
     """
     loaded = read_studies([word for word in words if is_study(word)])
     names = [Path(find_study_path(word)).name for word in words]
-    for name in names:
-        check_known(name, (*KINDS, *NAMES, *loaded), "list")
+    check_all(names, (*KINDS, *NAMES, *loaded), "list")
     if "metrics" in names:
         _load_metrics(loaded.values())
     shown = [study for key, study in loaded.items() if key in names] or [*loaded.values()]

@@ -3,7 +3,7 @@
 import math
 import sys
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from bezierplan import api
 from bezierplan.analysis import judgement
@@ -86,15 +86,10 @@ def main(
     file = {"file": str(out)} if out and answer.path else {}
     for name, text in (judgement.describe_answer(answer) | file).items():
         print(f"{name:16}{text}")
+    # The input is right, but there is no path: status 1.
     if not math.isfinite(answer.shortest):
-        _fail(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")
+        sys.exit(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")
     if answer.path is None:
-        _fail(f"{answer.method}: found no path{f'; {out} is not written' if out else ''}")
+        sys.exit(f"{answer.method}: found no path{f'; {out} is not written' if out else ''}")
     if not answer.feasible:
-        _fail(f"{answer.method}: its path is not feasible")
-
-
-def _fail(message: str) -> NoReturn:
-    """End with status 1: the input is right, but there is no path."""
-    print(message, file=sys.stderr)
-    sys.exit(1)
+        sys.exit(f"{answer.method}: its path is not feasible")

@@ -11,7 +11,7 @@ from bezierplan.commands.arguments import OutFile, Settings, check_suffix
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import Plan
 from bezierplan.running.answer import check_ends
-from bezierplan.schema.checked import Fault
+from bezierplan.workspaces.kinds import naming
 from bezierplan.workspaces.problem import Problem
 
 
@@ -81,13 +81,11 @@ def _read(file: Path, problems: dict[str, Problem]) -> list[api.Answer]:
     """
     answers_read = []
     for name, path, evaluations in benchmark.read_paths(file, problems):
-        problem, plan = problems[name], Plan.of_one(path, 0.0, "read")
-        try:
+        problem = problems[name]
+        with naming(f"{file}: {name}"):
             check_ends(path, problem)
-        except ValueError as fault:
-            raise Fault(f"{file}: {name}: {fault}") from None
         judged = judgement.compute_judgement(problem, shortest_path(problem), path)
-        plan = plan._replace(evaluations=evaluations)
+        plan = Plan.of_one(path, 0.0, "read")._replace(evaluations=evaluations)
         answers_read.append(
             api.Answer(**judged, **judgement.list_planner_fields(plan), method=str(file))
         )

@@ -146,7 +146,7 @@ def _parse(source: bytes) -> _Syntax:
         ):
             # The words about a planner's setting; what remains is its unit.
             node.args = node.args[2:]
-    return _Syntax(_compute_digest(repr(_nest(tree))), sorted(map(list, imports)), about)
+    return _Syntax(hash_text(repr(_nest(tree))), sorted(map(list, imports)), about)
 
 
 def _nest(part: Any) -> tuple | str:
@@ -162,7 +162,7 @@ def _nest(part: Any) -> tuple | str:
     return tuple(map(_nest, part)) if isinstance(part, list) else repr(part)
 
 
-def _compute_digest(text: str) -> str:
+def hash_text(text: str) -> str:
     """Return the digest of a text."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -224,7 +224,7 @@ def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, s
         )
     reached = _find_reached(*sorted(named))
     versions = {name: find_library_version(name) for name in sorted(reached.libraries)}
-    return {"code": _compute_digest(" ".join([*trees, reached.digest]))} | versions
+    return {"code": hash_text(" ".join([*trees, reached.digest]))} | versions
 
 
 @cache
@@ -264,7 +264,7 @@ def _find_reached(*modules: str) -> _Reach:
             for level, base, _ in syntax.imports:
                 libraries.update(COMPUTING.get(base.split(".")[0], ()) if not level else ())
     # Sorted, because sets of imports come in another order in each process.
-    digest = _compute_digest("\n".join(sorted(texts.values())))
+    digest = hash_text("\n".join(sorted(texts.values())))
     return _Reach(digest, libraries, [*map(_find_file, texts)])
 
 

@@ -66,20 +66,28 @@ def convert_answer(answer: Any, names: Collection[str] = ()) -> Plan:
     names: names that its extra columns cannot have. Raises Unfit for the first field with another
     type, form or range.
     """
-    if not isinstance(answer, Plan):
-        raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
-    plan = Plan(
-        path=None if answer.path is None else read_path(answer.path),
-        objective=_check_objective(answer.objective),
-        claimed_feasible=_check_claim(answer.claimed_feasible),
-        evaluations=_check_evaluations(answer.evaluations),
-        history=_check_history(answer.history),
-        stop=_check_stop(answer.stop),
-        extra=_check_extra(answer.extra, names),
+    _require(isinstance(answer, Plan), f"is a {type(answer).__name__}; expected a Plan")
+    path, objective, claim, evaluations, history, stop, extra = answer
+    if path is not None:
+        path = read_path(path)
+    _require(
+        _is_a(Real, objective) and not math.isnan(objective),
+        "objective: expected a number, and not nan",
     )
-    if plan.path is None and plan.claimed_feasible:
-        raise Unfit("claimed_feasible: true without a path")
-    return plan
+    _require(isinstance(claim, _TRUTHS), "claimed_feasible: expected true or false")
+    _require(
+        _is_a(Integral, evaluations) and 0 <= evaluations <= _LARGEST_WHOLE,
+        f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}",
+    )
+    _require(
+        _is_array(history, 1, "fiu") and len(history) and not np.isnan(history).any(),
+        "history: expected an array of numbers without nan, (generations + 1,)",
+    )
+    _require(isinstance(stop, str) and stop.isprintable(), "stop: expected a word")
+    extra = _convert_extra(extra, names)
+    _require(path is not None or not claim, "claimed_feasible: true without a path")
+    history = np.array(history, dtype=float)
+    return Plan(path, float(objective), bool(claim), int(evaluations), history, stop, extra)
 
 
 def accept_answer(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan:
@@ -112,13 +120,15 @@ def check_history(plan: Plan, keeps_best: bool) -> None:
     """Raise Unfit if a planner keeps the best path, but its history rises or does not end with the
     objective of its path.
     """
-    if keeps_best and (plan.history[1:] > plan.history[:-1]).any():
-        raise Unfit("history: rises; expected the best objective so far, or keeps_best = False")
-    if keeps_best and plan.path and plan.history[-1] != plan.objective:
-        raise Unfit(
-            f"objective: {plan.objective}; expected the last of history, {plan.history[-1]}, or "
-            "keeps_best = False"
-        )
+    history, last = plan.history, plan.history[-1]
+    _require(
+        not keeps_best or (history[1:] <= history[:-1]).all(),
+        "history: rises; expected the best objective so far, or keeps_best = False",
+    )
+    _require(
+        not keeps_best or not plan.path or last == plan.objective,
+        f"objective: {plan.objective}; expected the last of history, {last}, or keeps_best = False",
+    )
 
 
 def check_ends(path: Path | None, problem: Problem) -> None:
@@ -172,19 +182,21 @@ def judge_path(path: Path | None, blocked: Region) -> dict[str, Any]:
 
 def read_path(path: Any) -> Path:
     """Copy a path into plain values. Raises Unfit."""
-    if not isinstance(path, Path):
-        raise Unfit("path: expected None or a Path")
+    _require(isinstance(path, Path), "path: expected None or a Path")
     if path.curve not in curves.CURVES:
         raise Unfit(f"path: curve: {path.curve!r}; expected one of {', '.join(curves.CURVES)}")
-    if not _is_array(path.points, 2, "f") or path.points.shape[1] != 2:
-        raise Unfit("path: points: expected an array of floats, (n, 2)")
+    _require(
+        _is_array(path.points, 2, "f") and path.points.shape[1] == 2,
+        "path: points: expected an array of floats, (n, 2)",
+    )
     most = MOST_POINTS.get(path.curve, MOST_BLENDED)
-    if len(path.points) > most:
-        raise Unfit(f"path: points: {len(path.points)}; expected at most {most} of a {path.curve}")
+    _require(
+        len(path.points) <= most,
+        f"path: points: {len(path.points)}; expected at most {most} of a {path.curve}",
+    )
     # In rows: an array in columns is another type, for which kernels compile once more.
     copy = Path(path.curve, np.array(path.points, dtype=float, order="C"))
-    if not np.isfinite(copy.points).all():
-        raise Unfit("path: points: expected finite numbers")
+    _require(np.isfinite(copy.points).all(), "path: points: expected finite numbers")
     try:
         # The checker refuses coordinates and degrees that are too large; an exception later would
         # end a whole study.
@@ -194,73 +206,36 @@ def read_path(path: Any) -> Path:
     return copy
 
 
-def _check_objective(value: Any) -> float:
-    """Return the objective as a float; raise Unfit unless it is a number and not nan."""
-    if not _is_a(Real, value) or math.isnan(value):
-        raise Unfit("objective: expected a number, and not nan")
-    return float(value)
+def _require(truth: Any, message: str) -> None:
+    """Raise Unfit with a message unless something is true of an answer."""
+    if not truth:
+        raise Unfit(message)
 
 
-def _check_claim(value: Any) -> bool:
-    """Return the claim as a bool; raise Unfit unless it is true or false."""
-    if not isinstance(value, _TRUTHS):
-        raise Unfit("claimed_feasible: expected true or false")
-    return bool(value)
-
-
-def _check_evaluations(value: Any) -> int:
-    """Return the evaluations as an int; raise Unfit unless they are a whole number of at least 0
-    and at most `_LARGEST_WHOLE`.
-    """
-    if not _is_a(Integral, value) or not 0 <= value <= _LARGEST_WHOLE:
-        raise Unfit(
-            f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}"
-        )
-    return int(value)
-
-
-def _check_history(values: Any) -> np.ndarray:
-    """Return a copy of the history (generations + 1,); raise Unfit unless it holds numbers, at
-    least one and none nan.
-    """
-    if not _is_array(values, 1, "fiu") or not len(values) or np.isnan(values).any():
-        raise Unfit("history: expected an array of numbers without nan, (generations + 1,)")
-    return np.array(values, dtype=float)
-
-
-def _check_stop(value: Any) -> str:
-    """Return the word for why a planner stopped; raise Unfit unless it is printable text."""
-    if not isinstance(value, str) or not value.isprintable():
-        raise Unfit("stop: expected a word")
-    return value
-
-
-def _check_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
+def _convert_extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
     """Return the extra columns as plain values; raise Unfit for a name that no column can have or
-    one of `names`, and for an unfit value.
+    one of `names`, and for a value that is no truth and no number, a whole one of at most `_EXACT`.
     """
-    if not isinstance(columns, dict):
-        raise Unfit("extra: expected names with numbers or truths")
+    _require(isinstance(columns, dict), "extra: expected names with numbers or truths")
     for name in columns:
-        if not isinstance(name, str) or not _NAME.fullmatch(name):
-            raise Unfit(
-                f"extra: {name!a}: expected a name of at most 64 small letters, digits and "
-                "underscores"
-            )
-        if name in names:
-            raise Unfit(f"extra: {name}: a column or setting has this name already")
-    return {name: _check_column(name, value) for name, value in columns.items()}
+        _require(
+            isinstance(name, str) and _NAME.fullmatch(name),
+            f"extra: {name!a}: expected a name of at most 64 small letters, digits and underscores",
+        )
+        _require(name not in names, f"extra: {name}: a column or setting has this name already")
+    return {name: _convert_column(name, value) for name, value in columns.items()}
 
 
-def _check_column(name: str, value: Any) -> float | bool:
-    """Return the value of an extra column as a bool, int or float; raise Unfit unless it is a truth
-    or a number, a whole one of at most `_EXACT`.
-    """
+def _convert_column(name: str, value: Any) -> float | bool:
+    """Return the value of an extra column as a bool, int or float. Raises Unfit."""
     if isinstance(value, _TRUTHS):
         return bool(value)
-    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _EXACT):
-        raise Unfit(f"extra: {name}: expected a number, a whole one of at most 2**53, or a truth")
-    return int(value) if isinstance(value, Integral) else float(value)
+    whole = isinstance(value, Integral)
+    _require(
+        isinstance(value, Real) and not (whole and abs(value) > _EXACT),
+        f"extra: {name}: expected a number, a whole one of at most 2**53, or a truth",
+    )
+    return int(value) if whole else float(value)
 
 
 def _is_a(kind: type, value: Any) -> bool:

@@ -54,17 +54,6 @@ class Chunk(NamedTuple):
             for values in itertools.product(*self.vary.values())
         ]
 
-    @property
-    def runs(self) -> int:
-        """Return the number of its runs."""
-        first, last = self.repeats
-        return len(self.conditions()) * (last - first)
-
-    @property
-    def name(self) -> str:
-        """Return the common part of the ids of its runs, with a star for conditions."""
-        return f"{self.study}/{self.experiment}/*/{self.method}"
-
 
 def find_chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
     """Return the files of chunks below a folder, without the times and traces beside them."""

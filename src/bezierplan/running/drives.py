@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from bezierplan.running import answer
 from bezierplan.running.columns import DriveOutcome, DriveTimes, Outcome, Row
 from bezierplan.running.simulation import cells, motion_check, ways
 from bezierplan.running.simulation.robot import Ride
@@ -21,7 +22,8 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
-    path = trace_path(ride)
+    end = float(times[-1])
+    curve, vertices = answer.store_path(trace_path(ride))
     done = ways.measure_lengths(points)
     travelled, collision = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
@@ -29,23 +31,15 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
     until = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
     # The leg that leads to the collision: what the robot did before, not what it does once it is
     # hit.
-    leg = (
-        int(np.clip(np.searchsorted(times, verdict.collision_at, side="left"), 1, len(times) - 1))
-        if collision
-        else 0
-    )
-    places = ride.motion.at(np.append(np.arange(0, math.ceil(times[-1])), times[-1]))
-    # Without regard to what the robot believes: the motion itself leads from start to target.
-    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
-        problem.start,
-        problem.target,
-    )
+    leg = 1 + np.searchsorted(times[1:-1], verdict.collision_at)
+    places = ride.motion.at(np.append(np.arange(0, math.ceil(end)), end))
     outcome = Outcome(
         drew=drew,
-        objective=float(times[-1]) * world.pace if ride.arrived else math.inf,
+        objective=end * world.pace if ride.arrived else math.inf,
         length=travelled,
         claimed_feasible=ride.arrived,
-        feasible=ride.arrived and joins and not collision,
+        # Without regard to what the robot believes: the motion leads from start to target.
+        feasible=ride.arrived and joins_ends(points, problem) and not collision,
         collision_at=verdict.collision_at,
         collision_depth=verdict.depth,
         clearance=max(least, 0.0),
@@ -54,12 +48,12 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
         generations=ride.replans,
         stop="arrived" if ride.arrived else "time",
         history=[way + length for way, length in zip(until, lengths)],
-        path_curve=path.curve,
-        path_points=path.points.ravel().tolist(),
+        path_curve=curve,
+        path_points=vertices,
     )
     driving = DriveOutcome(
-        arrival=float(times[-1]) if ride.arrived else math.nan,
-        steps=float(times[-1]),
+        arrival=end if ride.arrived else math.nan,
+        steps=end,
         travelled=travelled,
         first_plan=lengths[0],
         last_plan=lengths[-1],
@@ -73,17 +67,21 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
         hit_waiting=collision and bool(np.array_equal(points[leg], points[leg - 1])),
         clearance_least=least,
     )
+    plans = [answer.store_path(plan.path) for plan in ride.plans]
     trace = {
         "x": places[:, 0].astype(np.float32),
         "y": places[:, 1].astype(np.float32),
         "clearance": verdict.clearance.astype(np.float32),
         "plan_time": [plan.time for plan in ride.plans],
-        "plan_curve": [plan.path.curve if plan.path else "" for plan in ride.plans],
-        "plan_points": [
-            plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans
-        ],
+        "plan_curve": [curve for curve, _ in plans],
+        "plan_points": [points for _, points in plans],
     }
     return outcome._asdict() | driving._asdict(), trace
+
+
+def joins_ends(points: np.ndarray, problem: Problem) -> bool:
+    """Return whether a way (n, 2) leads exactly from a problem's start to its target."""
+    return np.array_equal(points[[0, -1]], (problem.start, problem.target))
 
 
 def trace_path(ride: Ride) -> Path:

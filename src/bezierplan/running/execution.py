@@ -3,7 +3,6 @@ that moves, a run is a drive.
 """
 
 import itertools
-import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -27,6 +26,7 @@ from bezierplan.running.columns import (
     Times,
 )
 from bezierplan.running.guard import interface, process, worker
+from bezierplan.running.jobs import log
 from bezierplan.running.jobs.watchdog import PlannerFailure, begin
 from bezierplan.running.problems import Problems, Worlds
 from bezierplan.running.simulation import motion_check
@@ -72,8 +72,8 @@ def build_task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
 
 
 def describe_chunk(chunk: Chunk) -> str:
-    """Return how a message about all runs of a chunk begins."""
-    return f"run {chunk.name}: planner {chunk.planner}"
+    """Return how a message about all runs of a chunk begins, with a star for conditions."""
+    return f"run {chunk.study}/{chunk.experiment}/*/{chunk.method}: planner {chunk.planner}"
 
 
 def run_tasks(
@@ -299,9 +299,7 @@ def run_chunk(
     # A few repeats of a planner that draws may be equal by chance; without draws two tell.
     many = len(found) >= wanted * (5 if drew else 2)
     if not deterministic and 0 < wanted == len(answers) and many:
-        print(
-            f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}\n", end="", file=sys.stderr, flush=True
-        )
+        log.say(f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}")
     if not moving:
         return table_files.build_table(runs, Planned, Outcome), table_files.build_table(
             times, Times

@@ -50,14 +50,8 @@ def split_into_legs(problem: Problem, via: Sequence[Place]) -> list[Problem]:
 
     via: way points (x, y). Raises ValueError for one that is not free, or equals its neighbour.
     """
-    places = [problem.start]
-    for point in via:
-        ends = {"start": point, "target": point}
-        try:
-            places.append(problems.build("", ends, problem.workspace).start)
-        except ValueError as error:
-            raise ValueError(f"via{str(error).removeprefix('start')}") from None
-    pairs = list(pairwise([*places, problem.target]))
+    places = [problems.read_place("via", {"via": point}, problem.workspace) for point in via]
+    pairs = list(pairwise([problem.start, *places, problem.target]))
     # Without way points a start may be the target: the path then has no length.
     for start, target in pairs if via else ():
         if start == target:

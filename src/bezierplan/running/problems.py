@@ -56,13 +56,13 @@ def build(name: str, description: dict, workspace: Workspace) -> Problem:
 
     Raises ValueError, naming key and value, unless both lie in free space.
     """
-    start, target = (_read_end(end, description, workspace) for end in ("start", "target"))
+    start, target = (read_place(end, description, workspace) for end in ("start", "target"))
     return Problem(name, workspace, start, target)
 
 
-def _read_end(end: str, description: dict, workspace: Workspace) -> Place:
-    """Return the start or target of a description as (x, y) in units. Raises ValueError if it is
-    not free.
+def read_place(end: str, description: dict, workspace: Workspace) -> Place:
+    """Return the start or target of a description, or another place, as (x, y) in units. Raises
+    ValueError if it is not free.
     """
     key = end if end in description else f"{end}_cell"
     value = description[key]
@@ -175,8 +175,7 @@ def read(file: str) -> tuple[Problems, Worlds]:
     """
     from bezierplan.running import table_files
 
-    # The process that reads problems may be forked, which threads forbid.
-    table = table_files.read(file, threads=False).to_pylist()
+    table = table_files.read(file).to_pylist()
     drawn = {text: files.read_json(text) for text in {row["drawn"] for row in table}}
     problems = {
         row["problem"]: Problem(

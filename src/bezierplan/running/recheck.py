@@ -23,8 +23,8 @@ import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry.region import build_region
-from bezierplan.machine.digest import COMPUTING, find_library_version
-from bezierplan.running import answer, execution, problems, table_files
+from bezierplan.machine.digest import COMPUTING, find_library_version, hash_text
+from bezierplan.running import answer, drives, execution, problems, table_files
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned, Row
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
@@ -89,7 +89,7 @@ class RunsVerdict(NamedTuple):
     @property
     def digest(self) -> str:
         """Return one digest for all files of runs."""
-        return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
+        return hash_text("\n".join(sorted(self.digests)))
 
 
 def verify(tasks: list[StoredRuns], processes: int, say: Callable[[str], None]) -> RunsVerdict:
@@ -291,13 +291,12 @@ def _judge_way(
     """Return what the way of a drive says: value and tolerance by column."""
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())
     arrived = not math.isnan(row["arrival"])
-    joins = (tuple(points[0]), tuple(points[-1])) == (problem.start, problem.target)
-    free = math.isnan(row["collision_at"])
+    free = drives.joins_ends(points, problem) and math.isnan(row["collision_at"])
     return {
         "length": (length, _SAME),
         "travelled": (length, _SAME),
         "claimed_feasible": (arrived, 0.0),
-        "feasible": (arrived and joins and free, 0.0),
+        "feasible": (arrived and free, 0.0),
         "objective": (row["arrival"] * world.pace if arrived else math.inf, _SAME),
         "clearance": (max(row["clearance_least"], 0.0), _SAME),
     }

@@ -37,8 +37,7 @@ def build_table(rows: list[columns.Row], *declared: type) -> pa.Table:
             name: pa.array([row[name] for row in rows], types[name])
             if name in types
             else pa.array([row.get(name) for row in rows])
-            # A table without rows still has its columns.
-            for name in (names or types)
+            for name in names
         }
     )
 
@@ -62,19 +61,17 @@ def write(table: pa.Table, file: str) -> None:
     parquet.write_table(table.replace_schema_metadata((table.schema.metadata or {}) | digest), file)
 
 
-def read(file: str, threads: bool = True) -> pa.Table:
+def read(file: str) -> pa.Table:
     """Read the table of a Parquet file. Raises ValueError, naming the file, unless it is there and
     whole.
-
-    threads: pyarrow's; without them, this process can still be forked.
     """
     if not Path(file).is_file():
         raise ValueError(f"{file}: is not there; start again: the workflow makes it")
     try:
-        # Read here and not by pyarrow, which would start threads for it.
+        # By no thread of pyarrow, so that this process can still be forked.
         content = pa.BufferReader(Path(file).read_bytes())
         with parquet.ParquetFile(content, pre_buffer=False) as source:
-            return source.read(use_threads=threads)
+            return source.read(use_threads=False)
     except (OSError, pa.ArrowException):
         raise describe_misplaced(file, "not a whole Parquet file") from None
 

@@ -72,11 +72,12 @@ def _build_mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
 _Loader.add_constructor("tag:yaml.org,2002:map", _build_mapping)
 
 
-def read(file: Path, location: str | None = None) -> Any:
+def read(file: Path, location: str = "") -> Any:
     """Read a YAML file and return its content. Raises Fault, beginning with the location (default:
     the file's name).
     """
-    return parse(read_text(file, location or str(file)), location or str(file))
+    location = location or str(file)
+    return parse(read_text(file, location), location)
 
 
 def read_text(file: Path, location: str) -> str:

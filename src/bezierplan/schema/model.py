@@ -95,16 +95,16 @@ def list_keys(model: type[Model]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
-def parse(model: type[M], content: Any, location: str) -> M:
+def parse(model: type[M], content: Any, *location: str) -> M:
     """Return the content of a file as a model. Raises Fault, beginning with a location."""
-    sound, faults, _ = parse_sound_part(model, content, location)
+    sound, faults, _ = parse_sound_part(model, content, *location)
     if faults:
         raise Fault(*faults)
     return sound
 
 
 def parse_sound_part(
-    model: type[M], content: Any, location: str
+    model: type[M], content: Any, *location: str
 ) -> tuple[M, list[str], list[tuple[str, str]]]:
     """Return the sound part of a file's content as a model, the faults of the rest, and section and
     name of the entries that are left out for them. Raises Fault if too little is left.
@@ -117,7 +117,7 @@ def parse_sound_part(
             return model.model_validate(content), [*lines], []
         except ValidationError as error:
             faults, told = error.errors(include_url=False), len(lines)
-            lines |= dict.fromkeys(describe_fault(error, location).lines)
+            lines |= dict.fromkeys(_list_fault_lines(error, *location))
         # Options that panels share are copied before they are checked, so their unknown keys stay
         # and are told again.
         if len(lines) == told or not _take_out_unknown_keys(faults):
@@ -151,10 +151,8 @@ def _take_out_unknown_keys(faults: list[Any]) -> bool:
     return bool(unknown)
 
 
-def describe_fault(error: ValidationError, *location: str) -> Fault:
-    """Describe all faults of a model in lines, each with a location and the keys that
-    lead to it.
-    """
+def _list_fault_lines(error: ValidationError, *location: str) -> list[str]:
+    """List a line for each fault of a model, with a location and the keys that lead to it."""
     # After a key that is itself wrong, pydantic puts `[key]`.
     lines = [
         [
@@ -166,7 +164,7 @@ def describe_fault(error: ValidationError, *location: str) -> Fault:
     ]
     # Faults from which others may follow come first: the first line is the text of the exception.
     lines.sort(key=lambda line: (": unknown key" not in line[-1], len(line)))
-    return Fault(*map(": ".join, lines))
+    return [*map(": ".join, lines)]
 
 
 def build_error(text: str) -> PydanticCustomError:

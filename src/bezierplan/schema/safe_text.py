@@ -14,10 +14,9 @@ def escape(text: str, most: int | None = None) -> str:
 
     most: after so many characters the text is cut, and the result says so.
     """
-    cut = (
-        text if most is None or len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
-    )
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
+    if most is not None and len(text) > most:
+        text = f"{text[:most]}... ({len(text)} characters)"
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def describe_in_one_line(error: BaseException) -> str:

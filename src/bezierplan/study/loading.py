@@ -15,6 +15,7 @@ from typing import Any
 
 import pydantic
 
+from bezierplan.machine.digest import hash_text
 from bezierplan.machine.modules import find_code
 from bezierplan.places import PACKAGE, STUDIES, TREE, find_cache_folder, shorten_path
 from bezierplan.schema import checked
@@ -169,9 +170,7 @@ def _find_stamp(folder: Path, changes: Mapping[str, Any]) -> Path:
         str(folder.resolve()),
         *_describe_contents(folder),
     ]
-    return (
-        find_cache_folder() / "checked" / hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
-    )
+    return find_cache_folder() / "checked" / hash_text("\n".join(parts))
 
 
 _WRITTEN = frozenset(("__pycache__", "results", ".snakemake"))
@@ -202,15 +201,6 @@ def _describe_contents(folder: Path) -> list[str]:
             digest = hashlib.sha256(content).hexdigest()
             lines.append(f"{path} {os.path.realpath(path)} {digest}")
     return lines
-
-
-def read_study(folder: Path) -> Study:
-    """Read the study in a folder, and check each of its files on its own. Raises Fault."""
-    _load_code(folder)
-    study, faults, _ = _read(folder, {})
-    if faults:
-        raise Fault(*faults)
-    return study
 
 
 def _load_code(folder: Path) -> None:

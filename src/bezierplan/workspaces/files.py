@@ -17,6 +17,9 @@ from bezierplan.workspaces.polygons import Polygons
 
 Workspace = Grid | Circles | Polygons
 
+KINDS = {"grid": Grid, "circles": Circles, "polygons": Polygons}
+"""Kind of a workspace, as planners name it -> its type."""
+
 
 def load(description: dict, folder: Path) -> Workspace:
     """Load the workspace of a description; its files are looked up in a folder.
@@ -79,19 +82,13 @@ def _build_content(workspace: Workspace) -> dict:
     return content
 
 
-def _build_growth(content: dict) -> Growth | None:
-    """Restore how a workspace has grown, None if it has not."""
-    if "grown" not in content:
-        return None
-    known = content["grown"]
-    centres = read_only(np.reshape(known["centres"], (-1, 2)), float)
-    return Growth(known["radius"], read_json(known["original"]), centres)
-
-
 def read_json(text: str) -> Workspace:
     """Read the workspace that `write_json` wrote."""
     content = json.loads(text)
-    kind, unit, growth = content["kind"], content["unit"], _build_growth(content)
+    kind, unit, growth = content["kind"], content["unit"], None
+    if grown := content.get("grown"):
+        centres = read_only(np.reshape(grown["centres"], (-1, 2)), float)
+        growth = Growth(grown["radius"], read_json(grown["original"]), centres)
     if "circles" in content:
         table = np.reshape(content["circles"], (-1, 3))
         circles = Circles(tuple(content["bounds"]), table[:, :2], table[:, 2], unit, growth)

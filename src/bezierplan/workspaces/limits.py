@@ -63,9 +63,10 @@ def bounds_of(entries: Iterable[float]) -> Bounds:
 
 
 def check_bounds(bounds: Bounds) -> None:
-    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below
-    high by `SMALLEST_FEATURE`.
+    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, coordinates
+    within the limits, with low below high by `SMALLEST_FEATURE`.
     """
+    check_numbers(np.array(bounds, float), "bounds")
     if not (len(bounds) == 4 and bounds[0] < bounds[1] and bounds[2] < bounds[3]):
         raise ValueError(
             f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high"

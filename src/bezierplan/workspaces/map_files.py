@@ -5,10 +5,8 @@ command or a call, and the map itself.
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import describe_fault
+from bezierplan.schema.model import parse
 from bezierplan.workspaces import files, raster, robot
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.kinds import kinds
@@ -67,11 +65,8 @@ def describe(
         margin = {"margin": description["margin"]} if "margin" in description else {}
         x_low, x_high, y_low, y_high = read(file, home | {"kind": "polygons"} | margin).bounds
         description["cell"] = max(x_high - x_low, y_high - y_low) / CELLS
-    try:
-        # The user's own file and unit are left out: limits on their names are those of studies.
-        kinds()[kind].model_validate(home | {"unit": "m", "file": "map"} | description)
-    except ValidationError as error:
-        raise describe_fault(error) from None
+    # The user's own file and unit are left out: limits on their names are those of studies.
+    parse(kinds()[kind], home | {"unit": "m", "file": "map"} | description)
     return home | description
 
 
@@ -81,7 +76,6 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     Raises ValueError, which names file or option.
     """
     radius = robot_radius or 0.0
-    robot.check_radius(radius)
     if description["kind"] != "raster":
         return robot.grow(_load(file, description), radius)
     # It grows before it becomes cells, by the description's rule: `grow` itself knows only

@@ -75,7 +75,11 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
     >>> grow(room, 0.25).radii.tolist(), grow(room, 0.25).bounds
     ([0.75], (0.25, 3.75, 0.25, 2.75))
     """
-    check_radius(radius)
+    # Written so that nan fails as well.
+    if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
+        raise ValueError(
+            f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}"
+        )
     if radius == 0:
         return workspace
     # A second growth would take the grown map for the original.
@@ -107,22 +111,9 @@ def choose_suitable(workspace: Workspace, kinds: Collection[str] | None) -> Work
 
     kinds: the kinds of workspace that the planner serves, None for all.
     """
-    if (
-        isinstance(workspace, Grid)
-        and isinstance(workspace.shapes, Polygons)
-        and workspace.shapes.growth
-    ):
-        return workspace.shapes if kinds is None or "polygons" in kinds else workspace
-    return workspace
-
-
-def check_radius(radius: float) -> None:
-    """Raise ValueError unless a robot can have this radius."""
-    # Written so that nan fails as well.
-    if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
-        raise ValueError(
-            f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}"
-        )
+    shapes = getattr(workspace, "shapes", None)
+    suits = kinds is None or "polygons" in kinds
+    return shapes if suits and shapes and shapes.growth else workspace
 
 
 def _shrink(bounds: Bounds, radius: float) -> Bounds:

@@ -14,7 +14,7 @@ from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from bezierplan.schema import checked
 from bezierplan.schema.model import (
@@ -23,8 +23,8 @@ from bezierplan.schema.model import (
     NotNegative,
     Positive,
     build_value_type,
-    describe_fault,
     is_number,
+    parse,
 )
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import MOST_CELLS, check_cells, check_numbers, check_thickness
@@ -37,12 +37,10 @@ Unknown = Literal["occupied", "free"]
 def _is_origin(entry: Any) -> bool:
     """Tell whether an entry is x, y, and a yaw of nearly 0 or nan, which map_saver also writes."""
     try:
+        x, y, yaw = entry
         # Written so that a yaw of nan passes.
-        return (
-            all(map(is_number, entry[:2]))
-            and len(entry) == 3
-            and not abs(math.remainder(float(entry[2]), math.tau)) > 1e-6
-        )
+        turned = abs(math.remainder(float(yaw), math.tau)) > 1e-6
+        return is_number(x) and is_number(y) and not turned
     except (TypeError, ValueError):
         return False
 
@@ -121,10 +119,7 @@ def _read_content(file: Path) -> Content:
             if difflib.get_close_matches(key.lower(), keys, cutoff=0.7):
                 raise checked.Fault(f"{key}: unknown key{checked.describe_known(key, keys)}")
         content = {key: entry for key, entry in content.items() if key in keys}
-    try:
-        return Content.model_validate(content)
-    except ValidationError as error:
-        raise describe_fault(error) from None
+    return parse(Content, content)
 
 
 def _find_occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:

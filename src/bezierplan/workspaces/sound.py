@@ -21,7 +21,6 @@ def check_map(workspace: Workspace) -> None:
     if isinstance(home, Grid):
         _check_shape(home.occupied, "occupied", (None, None))
         check_thickness(home.cell, "cell:")
-    check_numbers(np.array(home.bounds, float), "bounds")
     check_bounds(home.bounds)
     if isinstance(home, Circles):
         _check_shape(home.radii, "radii", (None,))

@@ -52,7 +52,7 @@ class MovingCircles:
 
     def at(self, step: int) -> np.ndarray:
         """Return the centres (n, 2) at a whole step, in units."""
-        return positions(self.centres, self.velocities, np.array(self.walls), step)
+        return positions(self.centres, self.velocities, np.array(self.walls, float), step)
 
     def workspace(self, step: int, margin: float = 0.0) -> Grid | Circles:
         """Return what planners see at a step: the circles, grown by a margin in units, or the cells
@@ -88,11 +88,6 @@ class ChangingCells:
     def __post_init__(self) -> None:
         freeze(self, "moments")
 
-    @property
-    def unit(self) -> str:
-        """Return the name of the unit of length."""
-        return self.maps[0].unit
-
     def index(self, time: float) -> int:
         """Return the number of the map in force at a time; at a moment of change, the new one's."""
         return int(np.searchsorted(self.moments, time, side="right"))
@@ -101,9 +96,8 @@ class ChangingCells:
         """Return what planners see at a time; cells have no margin."""
         return self.maps[self.index(time)]
 
-    def obstacles(self, time: float) -> Grid:
-        """Return what the robot must not enter at a time."""
-        return self.maps[self.index(time)]
+    obstacles = workspace
+    """What the robot must not enter at a time."""
 
 
 World = MovingCircles | ChangingCells

@@ -17,17 +17,12 @@ from bezierplan.planners.parts.settings import read_setting
 from bezierplan.running.chunk import Settings
 from bezierplan.running.guard import process
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.schema.checked import Fault, check_known, describe_known
+from bezierplan.schema.checked import Fault, check_all, describe_known
 from bezierplan.schema.safe_text import LONGEST, describe_in_one_line, escape
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces import files
 
-KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
+KINDS = {each: kind for kind, each in files.KINDS.items()}
 """Type of a workspace -> its kind, as planners name it."""
-
-LIMIT = 60.0
-"""Seconds for which a planner's file may be executed when it is imported."""
 
 
 def load_planner_module(planner: str, location: str) -> ModuleType:
@@ -39,23 +34,7 @@ def load_planner_module(planner: str, location: str) -> ModuleType:
             _read_traits_of_file(planner)
         except PlannerFailure as failure:
             raise Fault(f"{location}: {failure}") from None
-    module, fault = import_planner(planner)
-    if fault:
-        raise Fault(f"{location}: {fault}")
-    return module
-
-
-def import_planner(planner: str) -> tuple[ModuleType | None, str]:
-    """Import a planner in this process; return its module and what is wrong with it, empty if
-    nothing is.
-    """
-    try:
-        module = load_planner(planner)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:  # a user's file can fail in any way
-        return None, describe_in_one_line(error)
-    return module, find_interface_fault(module)
+    return load_planner(planner)
 
 
 class Traits(NamedTuple):
@@ -87,7 +66,7 @@ def _read_traits_of_file(planner: str) -> Traits:
     """
     file = str(Path(planner).resolve())
     work = partial(describe_in_process, planner=file)
-    (said,) = process.run_function(work, "when it is imported", LIMIT)
+    (said,) = process.run_function(work, "when it is imported", process.STARTS)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)
@@ -97,8 +76,12 @@ def describe_in_process(begin: Callable[[str], None], planner: str) -> Iterator[
     """Yield the traits of a planner's file, or what is wrong with it. It runs in a process of its
     own.
     """
-    module, fault = import_planner(planner)
-    yield fault or _read_traits(module)
+    try:
+        module = load_planner(planner)
+    except BaseException as error:  # a user's file can fail in any way
+        yield describe_in_one_line(error)
+    else:
+        yield find_interface_fault(module) or _read_traits(module)
 
 
 def _read_traits(module: ModuleType) -> Traits:
@@ -161,14 +144,18 @@ def find_interface_fault(module: ModuleType) -> str:
             )
     if isinstance(extra := getattr(module, "extra", ()), str):
         return f"extra: {extra!r}: expected a tuple of names, such as ({extra!r},)"
-    return _find_workspaces_fault(getattr(module, "workspaces", ()))
+    kinds = getattr(module, "workspaces", ())
+    if not isinstance(kinds, tuple | list):
+        return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
+    for kind in kinds:
+        if kind not in KINDS.values():
+            return f"workspaces: {kind}: unknown{describe_known(kind, KINDS.values())}"
+    return ""
 
 
 def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> None:
     """Raise Fault, beginning with a location, for a name that is no setting of a planner."""
-    known = read_settings(module)
-    for name in names:
-        check_known(name, known, location)
+    check_all(names, read_settings(module), location)
 
 
 def check_settings(module: ModuleType, settings: Settings, location: str) -> None:
@@ -188,13 +175,3 @@ def check_settings(module: ModuleType, settings: Settings, location: str) -> Non
             raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")
     if hasattr(module, "check"):
         ask(module.check, location, settings)
-
-
-def _find_workspaces_fault(kinds: Any) -> str:
-    """Describe what is wrong with a planner's `workspaces`; empty if nothing."""
-    if not isinstance(kinds, tuple | list):
-        return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
-    for kind in kinds:
-        if kind not in KINDS.values():
-            return f"workspaces: {kind}: unknown{describe_known(kind, KINDS.values())}"
-    return ""

@@ -31,12 +31,13 @@ logger = logging.getLogger(__name__)
 MOST_PRINTED = 20_000
 """Most characters of a planner's own output that the log keeps."""
 
+STARTS = 60.0
+"""Seconds that a process may take to import a planner's file, and at least until its first run
+begins: a study's time limit may be shorter than Python and numba take to start on a busy machine.
+"""
+
 # Longest pause, in seconds, between two looks at whether a process is done.
 _LOOK = 0.05
-_STARTS = 60
-"""Seconds that a process of runs may take at least until its first run begins: a study's time limit
-may be shorter than Python and numba take to start on a busy machine.
-"""
 
 
 def run_isolated(
@@ -57,7 +58,7 @@ def run_isolated(
             yield each._replace(number=-1)
     work = work._replace(planner=str(Path(work.planner).resolve()))
     todo = partial(worker.yield_plain_answers, work=work, tasks=tasks, again=again)
-    for each in run_function(todo, name, limit, hashing, _STARTS):
+    for each in run_function(todo, name, limit, hashing):
         reply = worker.Reply(*each)
         yield reply._replace(result=plain_values.unpack(reply.result))
 
@@ -67,15 +68,14 @@ def run_function(
     name: str,
     limit: float | None,
     hashing: int = 0,
-    starts: float = 0.0,
 ) -> list[Any]:
     """Call a function in a separate process, and return what it yields.
 
     work: the function. It gets another one to call with the name of each run that begins, and
-    yields plain values. name: how messages begin before the first run. limit: seconds for each run.
-    hashing: seed of `hash`. starts: seconds that the process has at least until the first run
-    begins, whatever the limit. Raises PlannerFailure, naming the run, if the function raises an
-    exception, or the process crashes, ends itself, takes too long or leaves others behind.
+    yields plain values. name: how messages begin before the first run. limit: seconds for each run;
+    until the first begins, at least `STARTS`. hashing: seed of `hash`. Raises PlannerFailure,
+    naming the run, if the function raises an exception, or the process crashes, ends itself, takes
+    too long or leaves others behind.
     """
     with tempfile.TemporaryDirectory(prefix="bezierplan-") as folder:
         job, lines, printed, empty = (
@@ -100,7 +100,7 @@ def run_function(
                 start_new_session=True,
             )
             try:
-                ended = _await_end(process, lines, limit, starts)
+                ended = _await_end(process, lines, limit)
             finally:
                 with suppress(ProcessLookupError, PermissionError):
                     # The whole group, so nothing that the planner has started goes on.
@@ -110,28 +110,24 @@ def run_function(
         return _read(lines, name, ended)
 
 
-def _await_end(process: subprocess.Popen, lines: Path, limit: float | None, starts: float) -> str:
+def _await_end(process: subprocess.Popen, lines: Path, limit: float | None) -> str:
     """Wait for the end of a process, and describe it.
 
-    limit: seconds from one line to the next, after which the process is ended. starts: seconds that
-    it has at least until the first.
+    limit: seconds from one line to the next, after which the process is ended.
     """
     size, since, pause = -1, 0.0, 0.001
     # No system call waits for the end of a process and for a line of a file at once.
-    while True:
-        ended, status = os.waitpid(process.pid, os.WNOHANG)
-        if ended:
-            process.returncode = os.waitstatus_to_exitcode(status)
-            return describe_end(status)
+    while process.poll() is None:
         if (now := lines.stat().st_size) != size:
             size, since = now, time.monotonic()
         elif limit is not None:
-            allowed = limit if size else max(limit, starts)
+            allowed = limit if size else max(limit, STARTS)
             if time.monotonic() - since > allowed:
                 return f"not done within the time limit of {allowed:g} s; it is ended"
         # The pause grows, so that a short run is noticed at once.
         time.sleep(pause)
         pause = min(2 * pause, _LOOK)
+    return describe_end(process.returncode)
 
 
 def _log(printed: Path, name: str) -> None:

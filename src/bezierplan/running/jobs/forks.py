@@ -74,11 +74,6 @@ class Forks:
         self._starting, self._control = threading.Lock(), None
         self._process: subprocess.Popen | None = None
 
-    @property
-    def process(self) -> int | None:
-        """Return the number of the process that is forked; None before the first."""
-        return self._process and self._process.pid
-
     def start(self) -> None:
         """Start the process that is forked, unless it runs. It imports modules while Snakemake has
         other work.
@@ -109,18 +104,11 @@ class Forks:
 
         job = self._names.bind(*arguments).arguments
         cache = SourceCache(job["sourcecache_path"], job["runtime_sourcecache_path"])
-        file, source, language, *_ = get_source(
+        file, source, *_ = get_source(
             job["path"], cache, job["basedir"], job["wildcards"], job["params"]
         )
-        # Elsewhere libraries may not survive a fork; and a container or another environment has a
-        # Python of its own.
-        if (
-            language != "python"
-            or sys.platform != "linux"
-            or job["container_img"]
-            or job["conda_env"]
-            or job["env_modules"]
-        ):
+        # Elsewhere libraries may not survive a fork; another environment has a Python of its own.
+        if sys.platform != "linux" or job["conda_env"]:
             self._script(*arguments)
             return
         names = (
@@ -158,7 +146,7 @@ class Forks:
             under_way, status, ended = _watch(ours, benchmark)
         if status is not None and not ended:
             # A script that ends with 1 has told why; of any other end nothing has been told.
-            if os.waitstatus_to_exitcode(status) in (0, 1):
+            if status in (0, 1):
                 return status == 0
             ended = describe_end(status)
         log.report(
@@ -279,7 +267,7 @@ def reap(jobs: dict[int, socket.socket], *_: Any) -> None:
             if not child:
                 return
             with jobs.pop(child) as parent, contextlib.suppress(OSError):
-                parent.sendall(f"{ENDED} {status}\n".encode())
+                parent.sendall(f"{ENDED} {os.waitstatus_to_exitcode(status)}\n".encode())
 
 
 def compile_first() -> None:

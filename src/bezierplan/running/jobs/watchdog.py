@@ -2,14 +2,12 @@
 
 import ctypes
 import logging
-import os
 import resource
 import signal
 import sys
 import time
 
 PR_SET_PDEATHSIG = 1
-PR_SET_CHILD_SUBREAPER = 36
 
 UNDER_WAY = logging.getLogger("bezierplan.under_way")
 """Gets the time limit and the name of each run that a job begins; `forks` listens."""
@@ -38,14 +36,6 @@ def end_with_parent() -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def adopt_descendants() -> None:
-    """Have the kernel make this process the parent of its descendants that lose their own, so that
-    it can wait for them (Linux only: elsewhere `measure_cpu_time` misses them).
-    """
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
-
-
 def measure_cpu_time() -> float:
     """Return the CPU seconds of this process and of its children that have ended and were waited
     for, with those of theirs: a planner may leave its work to them.
@@ -55,14 +45,13 @@ def measure_cpu_time() -> float:
 
 
 def describe_end(status: int) -> str:
-    """Describe how a process ended before its work was done, from the operating system's status."""
-    if not os.WIFSIGNALED(status):
-        return (
-            "its process ended itself with exit status "
-            f"{os.waitstatus_to_exitcode(status)}, before it was done"
-        )
-    number = os.WTERMSIG(status)
-    name = signal.Signals(number).name if number in set(signal.Signals) else f"number {number}"
+    """Describe how a process ended before its work was done. status: its exit status, or the number
+    of the signal that ended it, below 0.
+    """
+    if status >= 0:
+        return f"its process ended itself with exit status {status}, before it was done"
+    known = -status in set(signal.Signals)
+    name = signal.Signals(-status).name if known else f"number {-status}"
     return f"its process was ended by signal {name}" + (
-        ", by another program or for want of memory" if number == signal.SIGKILL else ""
+        ", by another program or for want of memory" if name == "SIGKILL" else ""
     )

@@ -92,7 +92,7 @@ def find_blocked_length(grid: Grid, way: Way, s: float) -> float:
     """Return the length along a way, from its beginning, at which it first enters an occupied cell
     after `s`; infinite if never.
     """
-    points = way.part(s, way.length)
+    points, _ = ways.cut(*way, s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))
     if math.isinf(collision_at):
         return math.inf
@@ -174,9 +174,5 @@ def _find_start(
     """Return where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
         return None if is_blocked(build_region(grid), tuple(place)) else place
-    row, column = grid.cell_of(*place)
-    return (
-        None
-        if grid.occupied[row, column]
-        else np.array(grid.centre(row * grid.occupied.shape[1] + column))
-    )
+    cell = grid.cell_of(*place)
+    return None if grid.occupied[cell] else grid.in_units(np.array(cell[::-1]) + 0.5)

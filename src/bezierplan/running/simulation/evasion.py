@@ -7,7 +7,7 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.running.simulation.motion_check import measure_nearest
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.workspaces.worlds import MovingCircles, positions
+from bezierplan.workspaces.worlds import MovingCircles
 
 # A robot that evades compares standing still with a drive in each of so many directions, during one
 # of so many steps, after which it stays. It looks so many steps ahead.
@@ -26,14 +26,10 @@ def find_refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Poli
 
     step: the number of the one that begins.
     """
-    walls = np.array(world.walls, dtype=float)
     looked = step + (policy.sees == "after")
-    seen = positions(world.centres, world.velocities, walls, looked)
-    drift = (
-        positions(world.centres, world.velocities, walls, looked + 1) - seen
-        if policy.knows == "velocities"
-        else np.zeros_like(seen)
-    )
+    seen = world.at(looked)
+    knows = policy.knows == "velocities"
+    drift = world.at(looked + 1) - seen if knows else np.zeros_like(seen)
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     moves = world.pace * np.concatenate(
         [np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])]

@@ -31,14 +31,12 @@ class DrivePlan(NamedTuple):
     """A plan that the robot made.
 
     time: in steps. path: the planner's, or None. length: that of the way to it and along it, in
-    units. margin: how much larger the circles were for it, in units. seconds: CPU time.
-    evaluations: as in `Plan`.
+    units. seconds: CPU time. evaluations: as in `Plan`.
     """
 
     time: float
     path: Path | None
     length: float
-    margin: float
     seconds: float
     evaluations: int
 
@@ -156,21 +154,22 @@ def _plan(
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, measure_cpu_time()
 
-    def record_plan(path: Path | None, length: float, margin: float) -> DrivePlan:
+    def record_plan(path: Path | None, length: float) -> DrivePlan:
         """Return a plan with the CPU time so far."""
-        return DrivePlan(time, path, length, margin, measure_cpu_time() - began, evaluations)
+        return DrivePlan(time, path, length, measure_cpu_time() - began, evaluations)
 
-    looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
-    if policy.start == "centre" or isinstance(world, ChangingCells):
+    changing = isinstance(world, ChangingCells)
+    looked = time if changing else round(time) + (policy.sees == "after")
+    if policy.start == "centre" or changing:
         approach = cells.find_way_to_start(motion, world.workspace(time), policy.start)
     # Cells do not grow.
-    margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
+    margins = (0.0,) if changing else policy.plan_margins
     obstacles = build_region(world.obstacles(looked))
     for margin in margins:
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
-            return record_plan(None, 0.0, margin), build_way(approach), state
+            return record_plan(None, 0.0), build_way(approach), state
         # The next margin may leave both ends free.
         if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
@@ -180,8 +179,8 @@ def _plan(
             along = build_way(
                 np.concatenate([approach, build_drivable(plan.path, policy.spacing, obstacles)])
             )
-            return record_plan(plan.path, along.length, margin), along, next_state
-    return record_plan(None, math.inf, math.nan), None, state
+            return record_plan(plan.path, along.length), along, next_state
+    return record_plan(None, math.inf), None, state
 
 
 def _is_free(world: World, problem: Problem, point: Place) -> bool:

@@ -32,10 +32,6 @@ class Way(NamedTuple):
         """Return points (..., 2) after given lengths of way."""
         return find_places(self.points, self.at, s)
 
-    def part(self, begin: float, end: float) -> np.ndarray:
-        """Return the polyline (m, 2) between two lengths of way, with at least two points."""
-        return cut(self.points, self.at, begin, end)[0]
-
 
 def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
     """Return places (..., 2), at some values, of what moves straight from point to point (n, 2).

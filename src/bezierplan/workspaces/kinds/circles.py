@@ -32,7 +32,6 @@ def load(description: dict, folder: Path) -> Circles:
     >>> room.centres.tolist(), room.radii.tolist()
     ([[2.0, 1.5]], [0.5])
     """
-    check_numbers(np.array(description["bounds"], float), "bounds")
     limits = bounds_of(description["bounds"])
     table = np.array(description["circles"], float).reshape(-1, 3)
     table[:, 2] = description.get("radius", table[:, 2])

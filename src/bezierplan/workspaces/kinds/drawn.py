@@ -6,13 +6,9 @@ from pydantic import Field
 
 from bezierplan.machine.modules import load_module
 from bezierplan.schema.model import ARGUMENTS, Arguments, Name, Names
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
-from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.seeds import generator
-
-TYPES = {"circles": Circles, "grid": Grid, "polygons": Polygons}
 
 
 class Options(Workspace):
@@ -34,7 +30,7 @@ class Options(Workspace):
         return self.sees
 
 
-def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygons:
+def draw(description: dict, problem: dict, name: str) -> files.Workspace:
     """Have a study's function draw the workspace of a layout.
 
     Its random numbers follow from the names of study and workspace, and from the layout's number,
@@ -46,10 +42,8 @@ def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygo
     """
     function = getattr(load_module(description["file"]), description["function"])
     rng = generator(name, problem["layout"])
-    workspace: Circles | Grid | Polygons = function(
-        rng, problem, **description.get("arguments", {})
-    )
-    if not isinstance(workspace, TYPES[description["sees"]]):
+    workspace: files.Workspace = function(rng, problem, **description.get("arguments", {}))
+    if not isinstance(workspace, files.KINDS[description["sees"]]):
         raise ValueError(
             f"function: {function.__name__}: returns {type(workspace).__name__}; expected "
             f"{description['sees']}, as `sees` says"

@@ -42,6 +42,11 @@ class Options(Workspace):
 def draw(description: dict, problem: dict, name: str) -> Circles:
     """Draw the first so many circles of a layout.
 
+    Centres are uniform within the bounds; a circle that comes nearer to an end than the gap is
+    redrawn. Circles may overlap each other.
+
+    name: "study/workspace", which seeds the draw.
+
     Raises ValueError for more than it has, for bounds without room, and if no free place is found.
 
     Layouts with different numbers of circles are nested:
@@ -52,39 +57,20 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     >>> len(more.radii), bool((more.centres[:2] == few.centres).all())
     (5, True)
     """
-    ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
-    if problem["obstacles"] > description["circles"]:
+    count = problem["obstacles"]
+    if count > description["circles"]:
         raise ValueError(
-            f"obstacles: {problem['obstacles']}: expected at most {description['circles']}, the "
-            "circles of a layout"
+            f"obstacles: {count}: expected at most {description['circles']}, the circles of a "
+            "layout"
         )
-    return first(layout(description, name, problem["layout"], ends), problem["obstacles"])
-
-
-def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
-    """Draw one layout of a description with bounds, radius, circles (how many) and unit.
-
-    Centres are uniform within the bounds; a circle that comes nearer to an end, (x, y) in units,
-    than the gap is redrawn. Circles may overlap each other.
-
-    name: "study/workspace", which seeds the draw.
-    number: number of the layout.
-
-    Raises ValueError for bounds without room, and if no free place is found.
-    """
     # Neither the number of circles nor the ends are part of the seed.
-    rng = generator(name, number)
-    bounds = bounds_of(description["bounds"])
+    rng = generator(name, problem["layout"])
+    bounds, ends = bounds_of(description["bounds"]), np.array([problem["start"], problem["target"]])
     given, gap = description["radius"], description.get("gap", 0)
     centres, radii = [], []
-    for _ in range(description["circles"]):
+    for _ in range(count):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
         # A larger circle needs a wider gap, so its radius comes first.
-        centres.append(draw_centres(rng, 1, bounds, np.array(ends), radius + gap)[0])
+        centres.append(draw_centres(rng, 1, bounds, ends, radius + gap)[0])
         radii.append(radius)
-    return Circles(bounds, np.array(centres), np.array(radii), description["unit"])
-
-
-def first(circles: Circles, count: int) -> Circles:
-    """Return the first circles of a layout: layouts of different numbers of circles are nested."""
-    return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)
+    return Circles(bounds, np.reshape(centres, (-1, 2)), np.array(radii), description["unit"])
