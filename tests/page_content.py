@@ -141,7 +141,7 @@ def job() -> PageJob:
         },
         figures={"figure1": ArtefactView(caption("Lengths", HOSTILE))},
         assumptions=[OPEN_DETAIL],
-        files=["claims", "checks", "audit"],
+        files=["claims", "claim_checks", "audit"],
         experiments={},
         changes=[],
         answer=("One fails", HOSTILE),

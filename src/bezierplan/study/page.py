@@ -105,7 +105,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             dict(each) | {"default": find_default(study, each)} for each in study.assumptions
         ],
         files=[
-            *(("claims", "checks") if study.claims else ()),
+            *(("claims", "claim_checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
         changes=evidence.list_changes(study),

@@ -253,28 +253,33 @@ def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
     numbers = table["numbers"]
     values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
     named = [key for key in values if len(values[key]) > 1]
-    columns = list(dict.fromkeys(cell["column"] for cell in numbers))
+    columns: dict[str, list[Row]] = {}
     rows: dict[tuple, dict[str, Row]] = {}
     for cell in numbers:
+        columns.setdefault(cell["column"], []).append(cell)
         rows.setdefault(tuple(cell["keys"].values()), {})[cell["column"]] = cell
     study = table["address"].partition("/")[0]
-    listed = []
-    for cells in rows.values():
-        keys = next(iter(cells.values()))["keys"]
-        words = [
-            (
-                # The column names the key, so a number stands alone.
-                format_value(keys[key])
-                if isinstance(keys[key], int | float)
-                else reader.format_key(key, keys[key], labels),
-                addresses.build_address(study, "method", keys[key]),
-            )
-            for key in named
-        ]
-        primary = any(cell["primary"] for cell in cells.values())
-        listed.append((primary, words, [cells.get(column) for column in columns]))
+
+    listed = [
+        (
+            any(cell["primary"] for cell in cells.values()),
+            [
+                (
+                    # The column names the key, so a number stands alone.
+                    format_value(value)
+                    if isinstance(value, int | float)
+                    else reader.format_key(key, value, labels),
+                    addresses.build_address(study, "method", value),
+                )
+                for key, value in zip(values, place)
+                if key in named
+            ],
+            [cells.get(column) for column in columns],
+        )
+        for place, cells in rows.items()
+    ]
     return SimpleNamespace(
-        head=[labels.get(key, key.replace("_", " ")) for key in named] + columns,
+        head=[*(naming.name_column(key, labels) for key in named), *columns],
         rows=sorted(listed, key=lambda row: not row[0]),
         same=[
             f"{key.replace('_', ' ')}: {reader.format_key(key, next(iter(each)), labels)}"
@@ -282,12 +287,8 @@ def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
             if key not in named
         ],
         decimals=[
-            max(
-                _count_decimals(cell["value_published"])
-                for cell in numbers
-                if cell["column"] == column
-            )
-            for column in columns
+            max(_count_decimals(cell["value_published"]) for cell in own)
+            for own in columns.values()
         ],
     )
 

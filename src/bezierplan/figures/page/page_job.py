@@ -57,20 +57,12 @@ class StudyView(NamedTuple):
     assumptions: list[dict[str, Any]]
     """Details that the paper leaves open: the keys of their file, with the default in use."""
     files: list[str]
-    """The names of `FILES` that exist."""
+    """Its other tables, as far as there are any: claims, claim_checks, audit."""
     changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
     experiments: dict[str, ExperimentView]
     answer: tuple[str, str] | None = None
     """Title and text of the README's outcome."""
-
-
-FILES = {
-    "claims": "claims.csv",
-    "checks": "claim_checks.csv",
-    "audit": "audit.csv",
-}
-"""Tables of a study: claims, comparisons of claims, audit."""
 
 
 class PageJob(NamedTuple):

@@ -13,10 +13,11 @@ from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import methods
+from bezierplan.analysis.results import list_key_columns
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
+from bezierplan.figures.page.page_job import ArtefactView, PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
 
@@ -49,9 +50,9 @@ class Evidence(NamedTuple):
     checks: pd.DataFrame
     order_and_level: pd.DataFrame
 
-    def select(self, studies: list[str]) -> "Evidence":
-        """Return the evidence about some studies."""
-        return Evidence(*(table[table["study"].isin(studies)] for table in self))
+    def select(self, study: str) -> "Evidence":
+        """Return the evidence about a study."""
+        return Evidence(*(table[table["study"] == study] for table in self))
 
 
 def read_study_results(
@@ -65,26 +66,26 @@ def read_study_results(
     summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
     stands in place of the scale's own positions and verdicts.
     """
-    numbers, _, measured = summary or [pd.DataFrame(columns=["study"])] * 3
+    nothing = pd.DataFrame(columns=["study", "table", "metric", "quantity"])
+    numbers, _, measured = summary or [nothing] * 3
     pages = {}
     for key, view in job.studies.items():
-        files = dict.fromkeys(FILES, pd.DataFrame())
-        files |= {name: read(folder / key / FILES[name]) for name in view.files}
-        substitute = evidence.select([key]) if evidence and key in job.outcome else None
-        if substitute:
-            files |= {"claims": substitute.claims, "checks": substitute.checks}
-        claims = _list_claims(key, view, files)
-        counted = numbers[numbers["study"] == key]
-        own_tables = [
-            _describe_table(key, name, each, folder, view.labels, counted, substitute)
-            for name, each in view.tables.items()
-        ]
-        of_problems = substitute.methods if substitute else measured[measured["study"] == key]
+        files = dict.fromkeys(("claims", "claim_checks", "audit"), nothing)
+        files |= {name: read(folder / key / f"{name}.csv") for name in view.files}
+        counted, of_problems = (table[table["study"] == key] for table in (numbers, measured))
+        many = Evidence(*[nothing] * 5)
+        if evidence and key in job.outcome:
+            many = evidence.select(key)
+            files |= {"claims": many.claims, "claim_checks": many.checks}
+            of_problems = many.methods
         pages[key] = SimpleNamespace(
             key=key,
             job=view,
-            claims=claims,
-            tables=own_tables,
+            claims=_list_claims(key, view, files),
+            tables=[
+                _describe_table(key, name, each, folder, view.labels, counted, many)
+                for name, each in view.tables.items()
+            ],
             figures=[
                 _describe_figure(key, name, each, folder) for name, each in view.figures.items()
             ],
@@ -146,7 +147,7 @@ def _describe_table(
     folder: Path,
     labels: Labels,
     counted: pd.DataFrame,
-    evidence: Evidence | None,
+    evidence: Evidence,
 ) -> Row:
     """Return a table: its numbers next to published ones, or its columns and rows."""
     row, spec = _describe_artefact(study, name, artefact), artefact.spec
@@ -155,22 +156,17 @@ def _describe_table(
     table = read(folder / row["csv"])
     if not compared:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": list_rows(table)}
-    counted = counted[counted["table"] == name] if len(counted) else counted
-    many = evidence.numbers[evidence.numbers["table"] == name] if evidence else pd.DataFrame()
+    counted, many, columns = (
+        rows[rows["table"] == name]
+        for rows in (counted, evidence.numbers, evidence.order_and_level)
+    )
     cells = _list_numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
-    columns = (
-        evidence.order_and_level[evidence.order_and_level["table"] == name]
-        if evidence
-        else pd.DataFrame()
-    )
-    row["order_and_level"] = (
-        _describe_order_and_level(columns, spec, labels) if len(columns) else ""
-    )
     return row | {
         "numbers": cells,
         "laid": _lay_out_table(folder / f"{row['stem']}.csv", spec, cells),
+        "order_and_level": _describe_order_and_level(columns, spec, labels),
     }
 
 
@@ -232,7 +228,7 @@ def _list_numbers(
     (printed names), address, beside (ours for the paper's number of runs), bar
     (`charts.add_bars`).
     """
-    keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
+    keys = list_key_columns(comparison)
     what = ["metric", "statistic"]
     published = comparison["value_published"].notna()
     # `summary.list_numbers` keeps the order of a table's rows.
@@ -285,7 +281,7 @@ def _format_heading(metric: str, statistic: str, spec: Pivot, labels: Labels) ->
 def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Return claims in their primary variant, each with its other variants (`others`)."""
     compared: dict[tuple, list[Row]] = {}
-    for row in list_rows(files["checks"]):
+    for row in list_rows(files["claim_checks"]):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
     names = sentences.name_variants([*content.claims.values()], content.labels)
     claims: dict[str, Row] = {}
