@@ -4,7 +4,6 @@ import functools
 import itertools
 import tempfile
 from dataclasses import replace
-from pathlib import Path as File
 
 import numpy as np
 import pandas as pd
@@ -227,10 +226,10 @@ def sources(found: Results) -> Sources:
 
 def drawn(found: Results, *own: dict, columns: int = 1) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = str(File(folder) / "figure.csv")
-        sheet.write_data(sheet.collect_data(panels_of(list(own)), sources(found)), file)
-        return sheet.draw(panels_of(list(own)), sheet.read_data(file), scene(found), columns)
+    shown = panels_of(list(own))
+    with tempfile.NamedTemporaryFile() as file:
+        frame = sheet.store_data(sheet.collect_data(shown, sources(found)), file.name)
+    return sheet.draw(shown, frame, scene(found), columns)
 
 
 @functools.cache
@@ -263,8 +262,7 @@ def test_csv_keeps_every_number(tmp_path):
     frame = sheet.collect_data(panels_of(own), sources(found))
     assert frame.columns[0] == "panel"
     assert sorted(frame["panel"].unique()) == [0, 1, 2, 3, 4]
-    sheet.write_data(frame, str(tmp_path / "figure.csv"))
-    read = sheet.read_data(str(tmp_path / "figure.csv"))
+    read = sheet.store_data(frame, str(tmp_path / "figure.csv"))
     for column in ("x", "y", "t", "value", "median"):
         np.testing.assert_array_equal(read[column], frame[column])
 

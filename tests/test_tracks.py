@@ -134,8 +134,7 @@ def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
         ]
     )
     frame = sheet.collect_data(own, Sources({"routes": found}, functions={"surface": surface}))
-    sheet.write_data(frame, str(tmp_path / "figure.csv"))
-    read = sheet.read_data(str(tmp_path / "figure.csv"))
+    read = sheet.store_data(frame, str(tmp_path / "figure.csv"))
     figure = sheet.draw(own, read, sheet.FigureScene({"routes": found.problems}, {}, {}, "m"), 2)
     assert [axes.name for axes in figure.axes][:2] == ["3d", "rectilinear"]
     legend = {text.get_text() for text in figure.legends[0].get_texts()}

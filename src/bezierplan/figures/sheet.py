@@ -66,13 +66,9 @@ def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
     return pd.concat(frames, ignore_index=True)
 
 
-def write_data(frame: pd.DataFrame, file: str) -> None:
-    """Write the table of data as csv."""
+def store_data(frame: pd.DataFrame, file: str) -> pd.DataFrame:
+    """Write the table of data as csv, and return it read back, every number to its last bit."""
     frame.to_csv(file, index=False, lineterminator="\n")
-
-
-def read_data(file: str) -> pd.DataFrame:
-    """Read a file of `write_data`, every number to its last bit."""
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
@@ -83,8 +79,8 @@ def draw(
 
     The figure's label has notes: which runs each panel shows and counts; in a second line, things
     that are plain to the eye.
-    frame: preferably read back from the csv file (`read_data`), so that the figure shows exactly
-    its content. columns: panels per row. width: a key of `style.WIDTHS`.
+    frame: preferably as from `store_data`, so that the figure shows exactly the content of the
+    file. columns: panels per row. width: a key of `style.WIDTHS`.
     """
     rows, inches = math.ceil(len(panels) / columns), style.WIDTHS[width]
     # A dollar would begin a formula of matplotlib.

@@ -270,22 +270,17 @@ def find_only(runs: pd.DataFrame, column: str) -> Any:
     return values[0]
 
 
-def _find_places() -> dict[str, str]:
-    """Return the file of each kind of panel."""
-    return find_kinds("figures/panels", "panels")
-
-
 def load_kind(name: str) -> ModuleType:
     """Load the file of a kind of panel. Raises KeyError if there is none."""
-    return load_module(_find_places()[name])
+    return load_module(find_kinds("figures/panels", "panels")[name])
 
 
 def build_panel(keys: dict[str, Any]) -> Panel:
     """Build the panel of a job from its plain values."""
-    return load_kind(keys["kind"]).Options.model_validate(keys)
+    return list_kinds()[keys["kind"]].model_validate(keys)
 
 
 @functools.cache
 def list_kinds() -> dict[str, type[Panel]]:
     """Return the options of the panels of each kind."""
-    return {name: load_kind(name).Options for name in _find_places()}
+    return {name: load_kind(name).Options for name in find_kinds("figures/panels", "panels")}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -31,7 +31,7 @@ _JOINT = {"color": style.BLUE, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
 
 
 class Options(RunsPanel):
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    one = ("problem", "method")
 
     pick: Pick = Field(description=PICK)
     quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")

@@ -6,7 +6,7 @@ Or several paths in one workspace, a run chosen for each value of a column.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -140,7 +140,7 @@ class Options(RunsPanel):
     With hue, `one` is meant for each of its values.
     """
 
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    one = ("problem", "method")
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     pick: Pick = Field(None, description=PICK)

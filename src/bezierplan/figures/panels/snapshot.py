@@ -4,7 +4,7 @@ current plan and dropped plans.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -12,7 +12,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, find_only
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.schema.model import build_value_type, is_number
+from bezierplan.schema.model import build_number_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,14 +51,14 @@ _LOOK: dict[str, dict[str, Any]] = {
 
 
 class Options(RunsPanel):
-    rerun: ClassVar[bool] = True
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
-    drives: ClassVar[bool] = True
+    rerun = True
+    one = ("problem", "method")
+    drives = True
 
     pick: Pick = Field(description=PICK)
-    at: Annotated[
-        float, build_value_type(lambda share: is_number(share) and 0 <= share <= 1, "")
-    ] = Field(description="the moment, as a share of the time of the drive, a number from 0 to 1")
+    at: build_number_type(ge=0, le=1) = Field(
+        description="the moment, as a share of the time of the drive, a number from 0 to 1"
+    )
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
