@@ -55,14 +55,14 @@ def gather_content(
     """
     tables = [reader.read(file) for file in summary]
     studies = reader.read_study_results(job, folder, tables, evidence)
-    data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
+    data: dict[str, dict] = {"runs": {}, "problems": {}}
     for place, files in (results or {}).items():
         key, _, name = place.partition("/")
         shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
         studies[key].shown += shown
         for kind, own in found.items():
             data[kind] |= own
-    _merge_workspaces(data)
+    data["workspaces"] = _take_out_workspaces(data["problems"])
     repeats = [own.repeats for own in job.studies.values()]
     verified = None
     if proof:
@@ -88,17 +88,16 @@ def gather_content(
     )
 
 
-def _merge_workspaces(data: dict[str, dict]) -> None:
-    """Remove workspaces that equal an earlier one, and let their problems name that one."""
-    # Experiments on the same map would each bring its shapes.
+def _take_out_workspaces(problems: dict[str, Row]) -> dict[str, Row]:
+    """Take the workspaces out of problems, which then name them: the first problem on each."""
+    # Problems on the same map would each bring its shapes.
     first: dict[str, str] = {}
-    names = {
-        name: first.setdefault(json.dumps(shapes), name)
-        for name, shapes in data["workspaces"].items()
-    }
-    data["workspaces"] = {name: data["workspaces"][name] for name in first.values()}
-    for problem in data["problems"].values():
-        problem["workspace"] = names[problem["workspace"]]
+    workspaces: dict[str, Row] = {}
+    for name, problem in problems.items():
+        shapes = problem["workspace"]
+        problem["workspace"] = first.setdefault(json.dumps(shapes), name)
+        workspaces.setdefault(problem["workspace"], shapes)
+    return workspaces
 
 
 def _write_headline(
