@@ -33,8 +33,6 @@ MARKS = {
     "0": ("part", "neither holds"),
     "?": ("open", "not known"),
 }
-# Elements whose blanks mean something.
-_AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
 def gather_content(
@@ -124,12 +122,7 @@ def render_page(page: SimpleNamespace, folder: Path) -> str:
 
     folder: where the pictures of its figures are.
     """
-    text = build_environment(page, folder).get_template("page.html.jinja").render(page=page)
-    return "".join(
-        # Blanks around line breaks mean nothing elsewhere, and would make the page larger.
-        part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
-        for part in _AS_WRITTEN.split(text)
-    )
+    return build_environment(page, folder).get_template("page.html.jinja").render(page=page)
 
 
 def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:

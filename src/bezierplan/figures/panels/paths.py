@@ -73,7 +73,7 @@ _CHANGED = {
     },
     "vanished": {
         "edgecolor": style.BLUE,
-        "linestyle": (0, (2, 1)),
+        "linestyle": style.DOTTED,
         "hatch": "....",
         "label": "free since the change",
     },

@@ -38,7 +38,7 @@ _LOOK: dict[str, dict[str, Any]] = {
     "plan": {
         "color": style.BLUE,
         "linewidth": 1.2,
-        "linestyle": (0, (5, 1.5)),
+        "linestyle": style.DASHED,
         "zorder": 3,
         "label": "current plan",
         "clip_on": True,
