@@ -61,6 +61,9 @@ def gather_content(
         for kind, own in found.items():
             data[kind] |= own
     data["workspaces"] = _take_out_workspaces(data["problems"])
+    data["studies"] = {
+        key: {"labels": study.job.labels, "shown": study.shown} for key, study in studies.items()
+    }
     repeats = [own.repeats for own in job.studies.values()]
     verified = None
     if proof:
@@ -76,13 +79,7 @@ def gather_content(
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
-        data=data
-        | {
-            "studies": {
-                key: {"labels": study.job.labels, "shown": study.shown}
-                for key, study in studies.items()
-            }
-        },
+        data=data,
     )
 
 

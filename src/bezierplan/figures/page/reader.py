@@ -196,7 +196,7 @@ def _format_range(low: pd.Series, high: pd.Series) -> str:
     return " to ".join(dict.fromkeys(ends))
 
 
-def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
+def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
     """Lay a table out as the paper prints it.
 
     head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
@@ -204,12 +204,12 @@ def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
     """
     ours = pd.read_csv(file, dtype=str, keep_default_na=False)
     heads = len(spec.index)
-    numbers = {(cell["table_row"], cell["table_column"]): cell for cell in cells}
+    placed = {(cell["table_row"], cell["table_column"]): cell for cell in numbers}
     rows = []
     for row, texts in enumerate(ours.to_numpy().tolist()):
-        own = [numbers.get((row, column)) for column in range(len(texts) - heads)]
-        printed = [cell["as_printed"] if cell else "" for cell in own]
-        rows.append((texts[:heads], list(zip(printed, texts[heads:], own, strict=True))))
+        cells = [(text, placed.get((row, n))) for n, text in enumerate(texts[heads:])]
+        both = [(cell["as_printed"] if cell else "", text, cell) for text, cell in cells]
+        rows.append((texts[:heads], both))
     return {"head": list(ours), "rows": rows, "note": spec.note}
 
 
@@ -280,21 +280,20 @@ def _format_heading(metric: str, statistic: str, spec: Pivot, labels: Labels) ->
 
 def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Return claims in their primary variant, each with its other variants (`others`)."""
-    compared: dict[tuple, list[Row]] = {}
-    for row in list_rows(files["claim_checks"]):
-        compared.setdefault((row["id"], row["variant"]), []).append(row)
     names = sentences.name_variants([*content.claims.values()], content.labels)
-    claims: dict[str, Row] = {}
-    others: dict[str, list[Row]] = {}
-    for row in list_rows(files["claims"]):
+    rows, checks = list_rows(files["claims"]), list_rows(files["claim_checks"])
+    claims = []
+    for row in rows:
         if row["primary"]:
-            comparisons = compared.get((row["id"], row["variant"]), [])
-            named = {"variant": names.get(row["variant"] or "", "")}
-            claims[row["id"]] = _describe_claim(study, row, comparisons, content) | named
-        else:
-            other = row | {"variant": names.get(row["variant"], row["variant"])}
-            others.setdefault(row["id"], []).append(other)
-    return [claim | {"others": others.get(name, [])} for name, claim in claims.items()]
+            same = [each for each in rows if each["id"] == row["id"] and not each["primary"]]
+            others = [
+                each | {"variant": names.get(each["variant"], each["variant"])} for each in same
+            ]
+            place = row["id"], row["variant"]
+            own = [check for check in checks if (check["id"], check["variant"]) == place]
+            named = {"variant": names.get(row["variant"] or "", ""), "others": others}
+            claims.append(_describe_claim(study, row, own, content) | named)
+    return claims
 
 
 def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
@@ -330,7 +329,7 @@ def _describe_assumption(study: str, row: Row, labels: Labels) -> Row:
     """
     default = row["default"]
     if isinstance(default, dict):
-        values = {labels.get(name, name): value for name, value in default.items()}
-        one, *others = dict.fromkeys(map(str, values.values()))
-        default = ", ".join(f"{name}: {values[name]}" for name in values) if others else one
+        one, *others = {*map(str, default.values())}
+        each = (f"{labels.get(name, name)}: {value}" for name, value in default.items())
+        default = ", ".join(each) if others else one
     return row | {"address": build_address(study, row["id"]), "default": default}
