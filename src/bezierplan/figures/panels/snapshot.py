@@ -95,12 +95,11 @@ def _list_places(world: World, ride: Ride, collision_at: float, time: float) -> 
         step = int(time)
         now, after = world.at(step), world.at(step + 1)
         velocity = after - now
-        circles = pd.DataFrame(now + (time - step) * velocity, columns=["x", "y"])
-        circles = circles.assign(part="circle", size=world.radii, obstacle=range(len(now)))
+        circles = workspaces.list_points({"circle": now + (time - step) * velocity})
+        circles = circles.assign(size=world.radii, obstacle=range(len(now)))
         circles[["x_velocity", "y_velocity"]] = velocity
         bounds = world.bounds
-        corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
-        parts = [corners, circles]
+        parts = [workspaces.list_corners(bounds), circles]
     else:
         grid = world.workspace(time)
         parts, bounds = [workspaces.list_workspace_rows(grid)], grid.bounds
