@@ -12,7 +12,6 @@ from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
-    ArtefactView,
     MethodView,
     PageJob,
     StudyView,
@@ -135,11 +134,11 @@ def job() -> PageJob:
         },
         repeats=[2, 3],
         tables={
-            "table1": ArtefactView(caption(HOSTILE, HOSTILE, "C1", "C2"), table),
-            "more": ArtefactView(caption("more", ""), table.but(extends="table1")),
-            "listed": ArtefactView(caption("a list", ""), SimpleNamespace()),
+            "table1": (caption(HOSTILE, HOSTILE, "C1", "C2"), table),
+            "more": (caption("more", ""), table.but(extends="table1")),
+            "listed": (caption("a list", ""), SimpleNamespace()),
         },
-        figures={"figure1": ArtefactView(caption("Lengths", HOSTILE))},
+        figures={"figure1": caption("Lengths", HOSTILE)},
         assumptions=[OPEN_DETAIL],
         files=["claims", "claim_checks", "audit"],
         experiments={},

@@ -133,7 +133,7 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     cell = {"method": "a", "metric": "length", "statistic": "count", "value_published": 5.0}
     cell |= {"value_ours": 220.0, "value_ours_scaled": 5.5, "position": None}
-    spec = job().studies["one"].tables["table1"].spec
+    _, spec = job().studies["one"].tables["table1"]
     empty = pd.DataFrame()
     (found,) = reader._list_numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
     assert found["beside"] == 5.5

@@ -5,7 +5,6 @@ from pathlib import Path
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import EVIDENCE, PICTURES, list_files, sort_as_printed
 from bezierplan.figures.page.page_job import (
-    ArtefactView,
     ExperimentView,
     MethodView,
     PageJob,
@@ -76,11 +75,8 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
 
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
     """Return what the page needs to know of a study beside its results."""
-    artefacts = {
-        name: ArtefactView(
-            captions.build_caption(study, name, scale),
-            study.complete_table(name) if name in study.tables else None,
-        )
+    shown = {
+        name: captions.build_caption(study, name, scale)
         for name in list_artefacts(study, scale, root)
     }
     methods = {
@@ -99,8 +95,12 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         methods=methods,
         claims={claim.id: claim for claim in study.claims},
         repeats=_count_repeats(study, scale),
-        tables={name: each for name, each in artefacts.items() if name in study.tables},
-        figures={name: each for name, each in artefacts.items() if name in study.figures},
+        tables={
+            name: (caption, study.complete_table(name))
+            for name, caption in shown.items()
+            if name in study.tables
+        },
+        figures={name: caption for name, caption in shown.items() if name in study.figures},
         assumptions=[
             dict(each) | {"default": find_default(study, each)} for each in study.assumptions
         ],

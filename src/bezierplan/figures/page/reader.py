@@ -14,10 +14,11 @@ from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import methods
 from bezierplan.analysis.results import list_key_columns
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
+from bezierplan.figures.caption import Caption
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import ArtefactView, PageJob, StudyView
+from bezierplan.figures.page.page_job import PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
 
@@ -83,11 +84,14 @@ def read_study_results(
             job=view,
             claims=_list_claims(key, view, files),
             tables=[
-                _describe_table(key, name, each, folder, view.labels, counted, many)
-                for name, each in view.tables.items()
+                _describe_table(
+                    _describe_artefact(key, name, caption), spec, folder, view.labels, counted, many
+                )
+                for name, (caption, spec) in view.tables.items()
             ],
             figures=[
-                _describe_figure(key, name, each, folder) for name, each in view.figures.items()
+                _describe_figure(_describe_artefact(key, name, caption), folder)
+                for name, caption in view.figures.items()
             ],
             methods=[_describe_method(key, name, each) for name, each in view.methods.items()],
             assumptions=[_describe_assumption(key, each, view.labels) for each in view.assumptions],
@@ -119,11 +123,11 @@ def _describe_method(study: str, name: str, method: Any) -> Row:
     }
 
 
-def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
+def _describe_artefact(study: str, name: str, caption: Caption) -> Row:
     """Return the caption's parts of a table or figure, its address, and the path of its files
     without endings.
     """
-    return artefact.caption._asdict() | {
+    return caption._asdict() | {
         "name": name,
         "address": build_address(study, name),
         "stem": f"{study}/{choose_tree(name)}/{name}",
@@ -131,9 +135,8 @@ def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
     }
 
 
-def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
+def _describe_figure(row: Row, folder: Path) -> Row:
     """Return a figure with its notes: the runs that it shows, and what can be counted in it."""
-    row = _describe_artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
     # The first line is the caption, which the page has from its job.
     _, runs, *counts = text.split("\n", 2)
@@ -141,23 +144,21 @@ def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
 
 
 def _describe_table(
-    study: str,
-    name: str,
-    artefact: ArtefactView,
+    row: Row,
+    spec: TableEntry,
     folder: Path,
     labels: Labels,
     counted: pd.DataFrame,
     evidence: Evidence,
 ) -> Row:
     """Return a table: its numbers next to published ones, or its columns and rows."""
-    row, spec = _describe_artefact(study, name, artefact), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])
     if not compared:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": list_rows(table)}
     counted, many, columns = (
-        rows[rows["table"] == name]
+        rows[rows["table"] == row["name"]]
         for rows in (counted, evidence.numbers, evidence.order_and_level)
     )
     cells = _list_numbers(row["address"], table, spec, counted, many, labels)
