@@ -7,14 +7,12 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from studies import study
+from studies import studies
 
 from bezierplan.figures import style
 from bezierplan.study import jobs
 
-STUDIES = {
-    name: study(name) for name in ("song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje")
-}
+STUDIES = studies()
 
 # Contrasts that the Web Content Accessibility Guidelines 2.1 ask for, of marks and of small text
 # (criteria 1.4.11 and 1.4.3).

@@ -141,7 +141,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         keep_trailing_newline=True,
     )
     environment.filters |= {
-        "look": lambda verdict: legend.WORDS.get(verdict, legend.OTHER),
+        "look": lambda verdict: legend.WORDS[verdict],
         "short": format_value,
         "heading": naming.format_heading,
         "amount": naming.format_amount,
@@ -204,9 +204,8 @@ def label_keys(text: Any, labels: Labels) -> str:
 
 def count_verdicts(rows: Iterable[Row]) -> list[tuple[str, int]]:
     """Count the rows of each verdict, in the order of `legend.WORDS`."""
-    found = Counter(filter(None, (row["verdict"] for row in rows)))
-    names = [*legend.WORDS, *sorted(found.keys() - legend.WORDS.keys())]
-    return [(name, found[name]) for name in names if found[name]]
+    found = Counter(row["verdict"] for row in rows)
+    return [(name, found[name]) for name in legend.WORDS if found[name]]
 
 
 def describe_positions(cells: Iterable[Row]) -> str:

@@ -18,7 +18,6 @@ tables inside the functions that need them.
 from __future__ import annotations
 
 import functools
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -93,23 +92,6 @@ class Sources:
     published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     problems: Mapping[str, Problem] = field(default_factory=dict)
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
-    _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
-
-    def build_table(self, panel: TablePanel) -> pd.DataFrame:
-        """Build the table of a panel with a function of the study, once for all panels that draw
-        the same one.
-
-        The function gets the workspace and the published tables that the panel names, and its
-        arguments.
-        """
-        # As text, because arguments may be lists, which cannot be keys.
-        call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
-        if call not in self._tables:
-            first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
-            if names := convert_to_list(panel.published):
-                first.append({name: self.published[name] for name in names})
-            self._tables[call] = self.functions[panel.data](*first, **panel.arguments)
-        return self._tables[call]
 
 
 class Panel(Model, ABC):
@@ -186,11 +168,17 @@ class TablePanel(Panel):
     )
 
     def source(self, sources: Sources) -> Any:
-        """Return the rows of the function's table that are shown."""
+        """Return the rows of the function's table that are shown.
+
+        The function gets the workspace and the published tables that the panel names, and its
+        arguments.
+        """
         from bezierplan.analysis.results import select
 
-        # A copy, because several panels may share the table.
-        return select(sources.build_table(self), self.where).copy()
+        given = [] if self.workspace is None else [sources.workspaces[self.workspace]]
+        if names := convert_to_list(self.published):
+            given.append({name: sources.published[name] for name in names})
+        return select(sources.functions[self.data](*given, **self.arguments), self.where)
 
 
 class MetricPanel(RunsPanel):

@@ -70,6 +70,8 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     Raises ValueError for runs of several problems or methods, and if no run is found.
     """
+    import pandas as pd
+
     from bezierplan.running import execution
 
     run, _ = choose_run(results, options.pick)
