@@ -13,7 +13,6 @@ from bezierplan.places import TREE
 KEPT = TREE / outcome.KEPT
 
 
-
 @pytest.fixture(scope="module")
 def ma2020():
     file = TREE / "config/studies/ma2020/verdict.yaml"

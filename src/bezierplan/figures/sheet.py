@@ -7,7 +7,6 @@ import math
 import string
 import textwrap
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -45,10 +44,10 @@ class FigureScene(NamedTuple):
     workspaces: dict[str, Workspace]
     labels: dict[str, str]
     unit: str
-    looks: Mapping[str, str] = MappingProxyType({})
-    functions: Mapping[str, Callable[..., Any]] = MappingProxyType({})
+    looks: Mapping[str, str] = {}
+    functions: Mapping[str, Callable[..., Any]] = {}
     layout: Layout | None = None
-    places: Mapping[str, Problem] = MappingProxyType({})
+    places: Mapping[str, Problem] = {}
 
 
 def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:

@@ -20,9 +20,8 @@ from __future__ import annotations
 import functools
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -76,8 +75,7 @@ EACH = (
 )
 
 
-@dataclass(frozen=True)
-class Sources:
+class Sources(NamedTuple):
     """The sources of a figure's panels.
 
     results: by experiment. workspaces, problems: by name, if they are drawn without runs.
@@ -86,11 +84,11 @@ class Sources:
     it.
     """
 
-    results: Mapping[str, Results] = field(default_factory=dict)
-    workspaces: Mapping[str, Any] = field(default_factory=dict)
-    functions: Mapping[str, Callable[..., pd.DataFrame]] = field(default_factory=dict)
-    published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
-    problems: Mapping[str, Problem] = field(default_factory=dict)
+    results: Mapping[str, Results] = {}
+    workspaces: Mapping[str, Any] = {}
+    functions: Mapping[str, Callable[..., pd.DataFrame]] = {}
+    published: Mapping[str, pd.DataFrame] = {}
+    problems: Mapping[str, Problem] = {}
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
 
 
@@ -230,11 +228,14 @@ class Pick(Model):
         return self
 
 
-PICK = (
-    "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that have more than 0 of it, and with layout: column, only "
-    "of the layout in which that varies most"
-)
+Picked = Annotated[
+    Pick,
+    Field(
+        description="which run: {lowest: column} or {median: column} of the feasible ones, or "
+        "{repeat: number}; with having: metric, only of those that have more than 0 of it, and "
+        "with layout: column, only of the layout in which that varies most"
+    ),
+]
 
 
 def require_one(panel: Model, *keys: str) -> None:

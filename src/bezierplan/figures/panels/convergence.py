@@ -23,7 +23,7 @@ from bezierplan.figures.groups import (
     find_published,
     show_metric,
 )
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
+from bezierplan.figures.panels import Note, Pick, Picked, RunsPanel, require_one
 from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
 from bezierplan.running.columns import Row
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
@@ -45,7 +45,7 @@ _MOST_BANDS, _MOST_ENDS = 3, 5
 
 
 class Options(RunsPanel):
-    pick: Pick = Field(None, description=PICK)
+    pick: Picked = None
     hue: Column = Field(
         None,
         description="instead of pick, a column of the runs table: a line for each of its values",

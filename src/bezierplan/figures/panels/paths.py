@@ -15,7 +15,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import count_runs, describe_axis, find_published
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
+from bezierplan.figures.panels import Note, Pick, Picked, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.running.columns import Row
@@ -143,7 +143,7 @@ class Options(RunsPanel):
     one = ("problem", "method")
 
     experiment: Experiment = Field(None, description="the name of an experiment")
-    pick: Pick = Field(None, description=PICK)
+    pick: Picked = None
     explicit: Explicit = Field(
         None, description="instead of experiment and pick, {curve, points}: a path without a run"
     )
@@ -159,7 +159,7 @@ class Options(RunsPanel):
         "length",
         description="with hue, the metric whose value is written for each path; left out: length",
     )
-    letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
+    letters: workspaces.Letters = None
     changed_from: Annotated[Line, Names("problem of runs")] = Field(
         None,
         description="the name of another problem of the experiment, on cells as many: those that "
@@ -231,9 +231,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             for value, runs in groups
         ]
         numbers = metrics.compute_values(results.runs, options.measure, results.problems)
-        by_run = numbers.groupby(results.runs["id"]).first()
         frame = pd.concat(frames, ignore_index=True)
-        return frame.assign(measure=frame["run"].map(by_run))
+        return frame.assign(measure=frame["run"].map(dict(zip(results.runs["id"], numbers))))
     run, names = choose_run(results, options.pick)
     problem = results.problems[names["problem"]]
     places = {"start": [problem.start], "target": [problem.target]}

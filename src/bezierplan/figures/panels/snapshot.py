@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
+from bezierplan.figures.panels import Note, Picked, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import choose_run
 from bezierplan.schema.model import build_number_type
@@ -54,7 +54,7 @@ class Options(RunsPanel):
     one = ("problem", "method")
     drives = True
 
-    pick: Pick = Field(description=PICK)
+    pick: Picked
     at: build_number_type(ge=0, le=1) = Field(
         description="the moment, as a share of the time of the drive, a number from 0 to 1"
     )

@@ -51,8 +51,14 @@ ENDS = {
     "target": style.build_mark_style("*", 12, style.BLACK, label="target", zorder=4.5),
 }
 
-Letters = Annotated[list[Line], Field(min_length=2, max_length=2)]
-LETTERS = "what is written next to start and target: a list of two"
+Letters = Annotated[
+    list[Line],
+    Field(
+        min_length=2,
+        max_length=2,
+        description="what is written next to start and target: a list of two",
+    ),
+]
 # How far a letter stands from a place, towards the panel's centre, in points.
 _LETTER_OFFSET = np.array([14, 4])
 
@@ -258,9 +264,7 @@ def draw_shapes(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> N
     from matplotlib.collections import PatchCollection
 
     corners = frame[frame["part"] == "corner"]
-    axes.set_xlim(corners["x"].min(), corners["x"].max())
-    axes.set_ylim(corners["y"].min(), corners["y"].max())
-    axes.set_aspect("equal")
+    axes.set(xlim=corners["x"], ylim=corners["y"], aspect="equal")
     cells = frame[frame["part"].isin(_CELLS)]
     for part, own in cells.groupby("part"):
         draw_cells(axes, own, _CELLS[part])
