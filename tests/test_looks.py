@@ -36,7 +36,7 @@ def test_marks_and_words_stand_out_from_paper():
         assert contrast(colour) >= MARK, name
     marks = [mark for _, _, mark in style.LOOKS.values()]
     assert len(set(marks)) == len(marks)
-    for look in style.choose_line_styles([float(number) for number in range(10)]):
+    for look in style.choose_line_styles([float(number) for number in range(10)], {}):
         assert contrast(look["color"]) >= MARK, look
     for colour in (style.RED, style.BLUE, style.BLACK):
         assert contrast(colour) >= TEXT - 0.5, colour

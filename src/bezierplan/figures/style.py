@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -166,9 +165,7 @@ def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[st
     return looks
 
 
-def choose_line_styles(
-    values: Sequence[Any], looks: Mapping[str, str] = MappingProxyType({})
-) -> list[dict[str, Any]]:
+def choose_line_styles(values: Sequence[Any], looks: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return a style of line for each of some values side by side.
 
     Numbers get colours of a scale, methods their looks, and other values looks in order. looks:

@@ -236,8 +236,7 @@ def _list_numbers(
     comparison["counted"] = False
     if len(counted):
         comparison.loc[published, "counted"] = counted["counted"].to_numpy()
-    printed = comparison.loc[published, what].drop_duplicates()
-    cells = list_rows(comparison.merge(printed, on=what))
+    cells = list_rows(comparison.groupby(what).filter(lambda rows: published[rows.index].any()))
     positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
     by_place = {
         build_address(*(row[name] for name in positions[0])): row for row in list_rows(many)
