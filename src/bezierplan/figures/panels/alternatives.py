@@ -140,5 +140,5 @@ def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
     if is_share:
         return f"share of runs: {metric}"
     unit = "share of the other" if row["scale"] == "relative" else row["unit"]
-    beside = f" ({unit})" if isinstance(unit, str) and unit != "-" else ""
+    beside = f" ({unit})" if isinstance(unit, str) and unit not in ("-", "") else ""
     return f"difference in {metric}{beside}"

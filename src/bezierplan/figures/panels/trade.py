@@ -295,17 +295,17 @@ def _describe_paths(row: pd.Series) -> str:
 
 def _write_note(table: pd.DataFrame, scene: Any) -> Note:
     """Say how to read the marks, and which methods add something."""
-    names = table["method"].map(lambda name: naming.format_value(name, "method", scene.labels))
+    names = [naming.format_value(name, "method", scene.labels) for name in table["method"]]
+    table = table.assign(name=names)
     several = table["problems"].max() > 1
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside a mark the share of paths that are free, where not all are")
-    if none := ", ".join(names[table["free"] == 0]):
+    if none := ", ".join(table["name"][table["free"] == 0]):
         said.append(f"no free path: {none}")
     if "adds" in table and table["adds"].notna().any():
-        adding = table[table["adds"] > 0].assign(name=names)
         told = (
             row.name + (f" in {row.adds:.0f} of {row.problems:.0f}" if several else "")
-            for row in adding.itertuples()
+            for row in table[table["adds"] > 0].itertuples()
         )
         said.append(f"adds something: {', '.join(told) or 'none'}")
     return Note("", "; ".join(said))
