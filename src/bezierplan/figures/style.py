@@ -175,11 +175,10 @@ def choose_line_styles(values: Sequence[Any], looks: Mapping[str, str]) -> list[
     import matplotlib as mpl
 
     names: list[str] = []
+    black, *others = LOOKS  # black last: it is the baseline's
     for value in values:
-        own = looks.get(value, "")
-        # Black last: it is the baseline's.
-        free = [name for name in [*LOOKS][1:] if name not in names] or [*LOOKS]
-        names.append(own if own and own not in names else free[0])
+        free = (name for name in (looks.get(value), *others) if name and name not in names)
+        names.append(next(free, black))
     colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE](np.linspace(0, _LIGHTEST, len(values)))

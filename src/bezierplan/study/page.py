@@ -50,9 +50,8 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
             parts.append(jobs.build_claims(study, scale).shows)
         for part in parts:
             for name, methods in part.items():
-                place = f"{key}/{name}"
                 # Another table or figure may show other methods of the same experiment.
-                behind[place] = behind.get(place, {}) | methods
+                behind.setdefault(f"{key}/{name}", {}).update(methods)
     return behind
 
 
