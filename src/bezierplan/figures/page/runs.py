@@ -115,17 +115,19 @@ def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
     ordered = sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
-    gap, median = ordered[(len(ordered) - 1) // 2] if ordered else (np.inf, None)
+    # Where no run is feasible, one without a name stands for all three.
+    ordered = ordered or [(np.inf, None)]
+    gap, median = ordered[(len(ordered) - 1) // 2]
     return {
         "experiment": experiment,
         "problem": problem,
         "method": method,
         "count": len(runs),
-        "feasible": len(ordered),
+        "feasible": len(feasible),
         "gap": _round_finite(gap),
-        "best": ordered[0][1] if ordered else None,
+        "best": ordered[0][1],
         "median": median,
-        "worst": ordered[-1][1] if ordered else None,
+        "worst": ordered[-1][1],
         "failed": runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED],
     }
 

@@ -50,13 +50,15 @@ _WIDEST, _NARROWEST = 2.0, 1.0
 # Curves without points that bend them: the corners of one lie on it, the other has tangents.
 _UNCONTROLLED = ("polyline", "ferguson")
 
-_CONTROL_POINT = style.build_mark_style("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
+_CONTROL_POINTS = style.build_mark_style(
+    "o", 4.5, style.BLUE, markerfacecolor=style.FREE, label="control points", zorder=5
+)
 
 # In the order of the legend.
 LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
-    "control": {**_CONTROL_POINT, "label": "control points"},
-    "points": {**_CONTROL_POINT, "label": "control points"},
+    "control": _CONTROL_POINTS,
+    "points": _CONTROL_POINTS,
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "collision": style.build_mark_style("X", 8, style.BLACK, label="first collision", zorder=6),
