@@ -12,7 +12,6 @@ from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
-    ArtefactView,
     MethodView,
     PageJob,
     StudyView,
@@ -25,45 +24,19 @@ SVG = (
 
 NUMBER = {"statistic": "mean", "unit": "unit", "n_published": 10, "value_published": 10.51}
 NUMBER |= {"n_ours": 10, "value_ours": 10.715, "value_ours_scaled": 10.715}
-NUMBER |= {"low95_ours": 10.2, "high95_ours": 11.1, "low95_predicted": 10.1}
-NUMBER |= {
-    "high95_predicted": 11.3,
-    "wide": False,
-    "reason": None,
-    "share_feasible": 0.9,
-    "bound": 7.7,
-    "gap": 0.396,
-}
+NUMBER |= {"low95_predicted": 10.1, "high95_predicted": 11.3, "wide": False, "reason": None}
+NUMBER |= {"share_feasible": 0.9, "bound": 7.7, "primary": True, "position": "inside"}
 NUMBERS = [
-    {"method": "a", "metric": "length", "position": "inside", "primary": True},
-    {
-        "method": "b",
-        "metric": "length",
-        "position": "above",
-        "primary": True,
-        "value_ours": 14.0,
-    },
-    {"method": "a", "metric": "objective", "position": "inside", "primary": True, "wide": True},
-    {
-        "method": "c",
-        "metric": "length",
-        "position": None,
-        "primary": False,
-        "value_published": None,
-    },
+    {"method": "a", "metric": "length"},
+    {"method": "b", "metric": "length", "position": "above"}
+    | {"value_ours": 14.0, "value_ours_scaled": 14.0},
+    {"method": "a", "metric": "objective", "wide": True, "reason": "the map is ours"},
+    {"method": "c", "metric": "length", "position": None}
+    | {"primary": False, "value_published": None},
 ]
-NUMBERS[1]["value_ours_scaled"] = 14.0
-NUMBERS[2]["reason"] = "the map is ours"
 
-CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
-CLAIM |= {
-    "own_criterion": False,
-    "main": False,
-    "readings": "",
-    "place": "IV, Table I",
-    "holds": "1 of 2",
-    "n": 10,
-}
+CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "own_criterion": False}
+CLAIM |= {"main": False, "readings": "", "place": "IV, Table I", "holds": "1 of 2"}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
 CLAIMS = [
@@ -75,10 +48,7 @@ CLAIMS = [
         ("C2", "contradicted", False),
         ("C3", "undecided", True),
     )
-    for more in (
-        {"finding": finding, "own_criterion": identity == "C2"},
-        OTHER | {"finding": finding, "verdict": "contradicted"},
-    )
+    for more in ({"own_criterion": identity == "C2"}, OTHER | {"verdict": "contradicted"})
 ]
 
 CHECK = {"variant": "metric=length", "check": 1, "primary": True, "decisive": True, "test": "lower"}
@@ -135,13 +105,13 @@ def job() -> PageJob:
         },
         repeats=[2, 3],
         tables={
-            "table1": ArtefactView(caption(HOSTILE, HOSTILE, "C1", "C2"), table),
-            "more": ArtefactView(caption("more", ""), table.but(extends="table1")),
-            "listed": ArtefactView(caption("a list", ""), SimpleNamespace()),
+            "table1": (caption(HOSTILE, HOSTILE, "C1", "C2"), table),
+            "more": (caption("more", ""), table.but(extends="table1")),
+            "listed": (caption("a list", ""), SimpleNamespace()),
         },
-        figures={"figure1": ArtefactView(caption("Lengths", HOSTILE))},
+        figures={"figure1": caption("Lengths", HOSTILE)},
         assumptions=[OPEN_DETAIL],
-        files=["claims", "checks", "audit"],
+        files=["claims", "claim_checks", "audit"],
         experiments={},
         changes=[],
         answer=("One fails", HOSTILE),

@@ -4,7 +4,6 @@ import functools
 import itertools
 import tempfile
 from dataclasses import replace
-from pathlib import Path as File
 
 import numpy as np
 import pandas as pd
@@ -227,10 +226,10 @@ def sources(found: Results) -> Sources:
 
 def drawn(found: Results, *own: dict, columns: int = 1) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = str(File(folder) / "figure.csv")
-        sheet.write_data(sheet.collect_data(panels_of(list(own)), sources(found)), file)
-        return sheet.draw(panels_of(list(own)), sheet.read_data(file), scene(found), columns)
+    shown = panels_of(list(own))
+    with tempfile.NamedTemporaryFile() as file:
+        frame = sheet.store_data(sheet.collect_data(shown, sources(found)), file.name)
+    return sheet.draw(shown, frame, scene(found), columns)
 
 
 @functools.cache
@@ -263,8 +262,7 @@ def test_csv_keeps_every_number(tmp_path):
     frame = sheet.collect_data(panels_of(own), sources(found))
     assert frame.columns[0] == "panel"
     assert sorted(frame["panel"].unique()) == [0, 1, 2, 3, 4]
-    sheet.write_data(frame, str(tmp_path / "figure.csv"))
-    read = sheet.read_data(str(tmp_path / "figure.csv"))
+    read = sheet.store_data(frame, str(tmp_path / "figure.csv"))
     for column in ("x", "y", "t", "value", "median"):
         np.testing.assert_array_equal(read[column], frame[column])
 
@@ -467,16 +465,6 @@ def test_convergence_of_groups_holds_last_values_and_their_intervals():
     assert median.loc[median["points"] == 3, "objective"].iloc[-1] == pytest.approx(36.5)
 
 
-def test_convergence_marks_the_printed_means_of_one_table():
-    printed = printed_means().assign(table="table3").query("points.isna()")
-    found = comparison(pd.concat([printed, printed.assign(table="table4", value=1.0)]))
-    panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
-    frame = convergence.data(found, panels_of([panel | {"until": 5}])[0])
-    marked = frame[frame["printed"].notna()]
-    assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
-    assert "published final mean" in words(drawn(found, panel))
-
-
 def test_order_of_runs_changes_no_bit():
     found = comparison()
     other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
@@ -624,16 +612,6 @@ def test_a_drawing_shows_the_marks_of_its_function_in_their_order():
     assert axes.get_xlabel() == "x (m)", "the workspace gives the scale"
 
 
-# Functions
-
-
-def test_functions_get_the_published_tables_that_they_ask_for():
-    published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
-    panel = {"kind": "lines", "data": "own", "published": "table1", "x": "k", "metric": "value"}
-    found = Sources(functions={"own": lambda tables: tables["table1"]}, published=published)
-    assert sheet.collect_data(panels_of([panel]), found)["value"].tolist() == [3, 4]
-
-
 # What is drawn, number by number: small tables, every column unlike the others
 
 GRID = from_lines(["..", ".."], 1.0, "m")
@@ -724,11 +702,13 @@ def test_convergence_shows_the_run_and_in_context_the_median_and_the_band():
     assert not alone.get_legend_handles_labels()[1], "a single line needs no legend"
 
 
-def test_convergence_of_groups_shows_their_objectives():
-    other = history(method="b", objective=[49.0, 48.0, 44.0])
-    axes = axes_of(convergence, pd.concat([history(), other]), hue="method")
+def test_convergence_of_groups_shows_their_objectives_and_printed_means():
+    groups = [history(), history(method="b", objective=[49.0, 48.0, 44.0])]
+    axes = axes_of(convergence, pd.concat(groups).assign(printed=6.25), hue="method")
     assert [labelled(axes, method)[1] for method in "ab"] == [[9, 7, 6], [49, 48, 44]]
     assert band(axes) == ([8, 6.5, 5.5], [10, 7.5, 6.5])
+    assert [6.25] * 3 in [list(line.get_ydata()) for line in axes.lines]
+    assert "published final mean" in axes.get_legend_handles_labels()[1]
 
 
 def test_a_box_has_its_parts_where_they_lie():

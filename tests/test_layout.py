@@ -12,7 +12,7 @@ from studies import built, studies
 
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
-from bezierplan.schema.model import convert_to_list
+from bezierplan.schema.model import convert_to_list, identify
 from bezierplan.study.jobs import build_descriptions
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
@@ -263,19 +263,8 @@ def unmet(own, name, conditions, where):
         values = [value for fact, value in every if fact == key]
         whole = any(isinstance(value, list) for value in values)
         expected = [printed] if whole or not isinstance(printed, list) else printed
-        ours = [value for number, value in enumerate(values) if value not in values[:number]]
-        if sorted(map(float_or_text, ours)) != sorted(map(float_or_text, expected)):
-            yield key, printed, ours
-
-
-def float_or_text(value):
-    return str(
-        [float(each) for each in value]
-        if isinstance(value, list)
-        else float(value)
-        if isinstance(value, int | float)
-        else value
-    )
+        if {*map(identify, values)} != {*map(identify, expected)}:
+            yield key, printed, values
 
 
 @pytest.mark.parametrize(("study", "name"), [each for each in EVERY if layout_of(*each).conditions])

@@ -7,14 +7,12 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from studies import study
+from studies import studies
 
 from bezierplan.figures import style
 from bezierplan.study import jobs
 
-STUDIES = {
-    name: study(name) for name in ("song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje")
-}
+STUDIES = studies()
 
 # Contrasts that the Web Content Accessibility Guidelines 2.1 ask for, of marks and of small text
 # (criteria 1.4.11 and 1.4.3).
@@ -38,7 +36,7 @@ def test_marks_and_words_stand_out_from_paper():
         assert contrast(colour) >= MARK, name
     marks = [mark for _, _, mark in style.LOOKS.values()]
     assert len(set(marks)) == len(marks)
-    for look in style.choose_line_styles([float(number) for number in range(10)]):
+    for look in style.choose_line_styles([float(number) for number in range(10)], {}):
         assert contrast(look["color"]) >= MARK, look
     for colour in (style.RED, style.BLUE, style.BLACK):
         assert contrast(colour) >= TEXT - 0.5, colour

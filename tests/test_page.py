@@ -5,7 +5,6 @@ import re
 import sys
 import zlib
 from base64 import b64decode
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+from bs4 import BeautifulSoup
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -49,12 +49,8 @@ def text(content, folder):
 
 @pytest.fixture(scope="module")
 def elements(text):
-    """Tags of the page, each with its attributes."""
-    found = []
-    reader = HTMLParser()
-    reader.handle_starttag = lambda tag, attributes: found.append((tag, dict(attributes)))
-    reader.feed(text)
-    return found
+    """The page as a tree."""
+    return BeautifulSoup(text, "html.parser")
 
 
 def test_page_asks_for_no_other_file_while_scripts_run(text):
@@ -66,15 +62,15 @@ def test_page_asks_for_no_other_file_while_scripts_run(text):
 
 
 def test_addresses_are_unique_and_every_link_within_the_page_has_its_place(elements):
-    places = [attributes["id"] for _, attributes in elements if "id" in attributes]
+    places = [each["id"] for each in elements(id=True)]
     assert len(places) == len(set(places))
-    links = {attributes["href"] for tag, attributes in elements if tag == "a"}
+    links = {link["href"] for link in elements("a")}
     assert {link[1:] for link in links if link.startswith("#")} <= set(places)
     assert {"one/table1/a/length/mean", "one/C2", "one/table1", "one/O1"} <= set(places)
 
 
 def test_pictures_have_their_size_before_they_are_unpacked(elements):
-    (picture,) = [attributes for tag, attributes in elements if "data-packed" in attributes]
+    (picture,) = elements.select("[data-packed]")
     assert (picture["width"], picture["height"]) == ("144", "72")
     assert picture["alt"] == "Figure 1: Lengths. (a) lowest mean: b."
     assert zlib.decompress(b64decode(picture["data-packed"])).decode() == SVG
@@ -133,7 +129,7 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
     cell = {"method": "a", "metric": "length", "statistic": "count", "value_published": 5.0}
     cell |= {"value_ours": 220.0, "value_ours_scaled": 5.5, "position": None}
-    spec = job().studies["one"].tables["table1"].spec
+    _, spec = job().studies["one"].tables["table1"]
     empty = pd.DataFrame()
     (found,) = reader._list_numbers("one/t", pd.DataFrame([cell]), spec, empty, empty, {})
     assert found["beside"] == 5.5

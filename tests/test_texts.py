@@ -4,13 +4,13 @@ import facts
 import outcome
 import pandas as pd
 import pytest
+from studies import KEYS
 
 from bezierplan.analysis.outcome import texts
 from bezierplan.commands import read_studies
 from bezierplan.places import TREE
 
 KEPT = TREE / outcome.KEPT
-ANSWERED = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def ma2020():
     return texts.read(file), facts.read_outcome_tables(KEPT, "ma2020")
 
 
-@pytest.mark.parametrize("study", ANSWERED)
+@pytest.mark.parametrize("study", KEYS)
 def test_the_facts_of_each_text_hold_in_the_kept_outcome(study):
     files = {study: read_studies()[study].verdict_file()}
     answer = outcome.fill_texts(KEPT, files)[study]

@@ -134,8 +134,7 @@ def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
         ]
     )
     frame = sheet.collect_data(own, Sources({"routes": found}, functions={"surface": surface}))
-    sheet.write_data(frame, str(tmp_path / "figure.csv"))
-    read = sheet.read_data(str(tmp_path / "figure.csv"))
+    read = sheet.store_data(frame, str(tmp_path / "figure.csv"))
     figure = sheet.draw(own, read, sheet.FigureScene({"routes": found.problems}, {}, {}, "m"), 2)
     assert [axes.name for axes in figure.axes][:2] == ["3d", "rectilinear"]
     legend = {text.get_text() for text in figure.legends[0].get_texts()}
@@ -147,6 +146,5 @@ def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
         assert -1 <= extent.y0 <= extent.y1 <= figure.bbox.height + 1
 
 
-def test_round_numbers():
-    assert landscape.choose_round_numbers(np.array([7.6, 310.0])).tolist() == [10, 20, 50, 100, 200]
+def test_round_numbers_below_one():
     assert landscape.choose_round_numbers(np.array([0.05, 0.3])) == pytest.approx([0.05, 0.1, 0.2])

@@ -1,6 +1,7 @@
 """What a method adds to the rounded shortest path: planted runs beside the line over its radii."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -74,6 +75,13 @@ def test_a_method_adds_something_only_under_the_line_and_if_it_is_free(radius):
     _, in_time = drawn(runs_of("under", **under), x="cpu_s")
     assert in_time["x"]["under"] == 0.01
     assert "adds" not in in_time
+
+
+def test_a_note_names_the_methods_that_add_something():
+    _, own = drawn(runs_of("under", 0.5), runs_of("above", 2), runs_of("never", 2, free=0))
+    scene = SimpleNamespace(labels={"under": "Under"})
+    for table, said in ((own, "no free path: never; adds something: Under"), (own[:1], ": none")):
+        assert trade._write_note(table.reset_index(), scene).caption.endswith(said)
 
 
 def test_paths_with_corners_are_counted_and_enter_no_median():

@@ -101,10 +101,10 @@ class FigureFiles(Job):
 
         published = results.read_published_tables(input_files.sources)
         numbers = results.join_numbers(published)
-        read = results.read_all(inputs.group_by_experiment(self.shows, input_files), self.repeats)
+        files = inputs.group_by_experiment(self.shows, input_files)
         experiments = {
             name: runs._replace(published=numbers, jobs=self.chunks.get(name))
-            for name, runs in read.items()
+            for name, runs in results.read_all(files, self.repeats).items()
         }
         workspaces = {
             name: workspace_files.load(described, Path(self.folder))
@@ -123,10 +123,8 @@ class FigureFiles(Job):
         under = [*zip(self.alternatives, checks, strict=True)]
         sources = Sources(experiments, workspaces, functions, published, places, under)
         # Read back, so that pictures show exactly the content of the file.
-        sheet.write_data(sheet.collect_data(self.panels, sources), output_files.data)
-        figure = sheet.draw(
-            self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
-        )
+        frame = sheet.store_data(sheet.collect_data(self.panels, sources), output_files.data)
+        figure = sheet.draw(self.panels, frame, scene, self.columns, self.width)
         sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
         text = f"{self.caption}\n{figure.get_label()}\n"
         Path(output_files.caption).write_text(text, encoding="utf-8")

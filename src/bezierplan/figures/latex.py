@@ -75,14 +75,15 @@ def format_table(table: pd.DataFrame, caption: str, label: str, notes: Sequence[
     body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in rows), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
-    body += [f"\\par\\footnotesize {escape_signs(note)}." for note in notes]
-    head = [
+    lines = [
         "\\centering",
         f"\\caption{{{escape_signs(caption)}}}",
         f"\\label{{{label}}}",
+        *body,
+        *(f"\\par\\footnotesize {escape_signs(note)}." for note in notes),
     ]
-    lines = ["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""]
-    return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *lines])
+    head = ["% Needs \\usepackage{booktabs,graphicx}.", "\\begin{table}[htbp]"]
+    return "\n".join([*head, *(f"  {line}" for line in lines), "\\end{table}", ""])
 
 
 def escape_signs(text: str) -> str:

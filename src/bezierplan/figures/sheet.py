@@ -6,9 +6,7 @@ A kind of panel is a module of `figures.panels`, which says what each has.
 import math
 import string
 import textwrap
-from collections import Counter
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -46,10 +44,10 @@ class FigureScene(NamedTuple):
     workspaces: dict[str, Workspace]
     labels: dict[str, str]
     unit: str
-    looks: Mapping[str, str] = MappingProxyType({})
-    functions: Mapping[str, Callable[..., Any]] = MappingProxyType({})
+    looks: Mapping[str, str] = {}
+    functions: Mapping[str, Callable[..., Any]] = {}
     layout: Layout | None = None
-    places: Mapping[str, Problem] = MappingProxyType({})
+    places: Mapping[str, Problem] = {}
 
 
 def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
@@ -66,13 +64,9 @@ def collect_data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
     return pd.concat(frames, ignore_index=True)
 
 
-def write_data(frame: pd.DataFrame, file: str) -> None:
-    """Write the table of data as csv."""
+def store_data(frame: pd.DataFrame, file: str) -> pd.DataFrame:
+    """Write the table of data as csv, and return it read back, every number to its last bit."""
     frame.to_csv(file, index=False, lineterminator="\n")
-
-
-def read_data(file: str) -> pd.DataFrame:
-    """Read a file of `write_data`, every number to its last bit."""
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
@@ -83,14 +77,14 @@ def draw(
 
     The figure's label has notes: which runs each panel shows and counts; in a second line, things
     that are plain to the eye.
-    frame: preferably read back from the csv file (`read_data`), so that the figure shows exactly
-    its content. columns: panels per row. width: a key of `style.WIDTHS`.
+    frame: preferably as from `store_data`, so that the figure shows exactly the content of the
+    file. columns: panels per row. width: a key of `style.WIDTHS`.
     """
     rows, inches = math.ceil(len(panels) / columns), style.WIDTHS[width]
     # A dollar would begin a formula of matplotlib.
     labels = {name: text.replace("$", r"\$") for name, text in scene.labels.items()}
     scene = scene._replace(labels=labels)
-    letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]]
+    letters = [f"({letter})" for letter in string.ascii_lowercase[: len(panels)]]
     if len(panels) == 1:
         letters = [""]
     several = "method" in frame and frame["method"].nunique() > 1
@@ -113,7 +107,7 @@ def draw(
             title = (panel.title or "").replace("$", r"\$")
             first = ", ".join(filter(None, [title, method]))
             heading = "\n".join(filter(None, [first, notes[-1].heading]))
-            _fit(axes, letter + heading, inches / columns)
+            _fit(axes, f"{letter} {heading}".lstrip(), inches / columns)
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure, scene.layout.names if scene.layout else {})
         _fit_height(figure)
@@ -158,7 +152,7 @@ def _name_axes_once(panels: list[Axes], columns: int) -> None:
             if number % columns:
                 axes.set_ylabel("")
     if len({axes.get_xlabel() for axes in panels}) == 1:
-        for axes in panels[: max(0, len(panels) - columns)]:
+        for axes in panels[:-columns]:
             axes.set_xlabel("")
 
 
@@ -199,25 +193,21 @@ def _fit_height(figure: Figure) -> None:
 
 def _join_clauses(letters: list[str], clauses: list[str]) -> str:
     """Return what the panels say, each with its letter; panels that say the same share one."""
-    same = {
-        clause: [letter.strip() for letter, own in zip(letters, clauses) if own == clause]
-        for clause in filter(None, clauses)
-    }
-    return " ".join(f"{', '.join(own)} {clause}.".lstrip() for clause, own in same.items())
+    same: dict[str, list[str]] = {}
+    for letter, clause in zip(letters, clauses):
+        same.setdefault(clause, []).append(letter)
+    return " ".join(f"{', '.join(same[each])} {each}.".lstrip() for each in filter(None, same))
 
 
 def _describe_equal_paths(letters: list[str], frame: pd.DataFrame) -> str:
     """Say which panels show the same path."""
     if "part" not in frame:
         return ""
-    panels = frame[frame["part"] == "path"].groupby("panel")
-    paths = {number: own[["x", "y"]].to_numpy().tobytes() for number, own in panels}
-    same = [
-        ", ".join(letters[number].strip() for number in paths if paths[number] == path)
-        for path, count in Counter(paths.values()).items()
-        if count > 1
-    ]
-    return " ".join(f"{panels} show the same path." for panels in same)
+    same: dict[bytes, list[str]] = {}
+    for number, path in frame[frame["part"] == "path"].groupby("panel"):
+        same.setdefault(path[["x", "y"]].to_numpy().tobytes(), []).append(letters[number])
+    several = (", ".join(own) for own in same.values() if len(own) > 1)
+    return " ".join(f"{panels} show the same path." for panels in several)
 
 
 def save(figure: Figure, *files: str) -> None:

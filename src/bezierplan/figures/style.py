@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -65,31 +64,39 @@ RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
 COLOURS = {"red": RED, "blue": BLUE, "black": BLACK}
 
+# Dashes of lines.
+DASHED, DOTTED, DASH_DOT, DASH_DOTS = (
+    (0, (5, 1.5)),
+    (0, (2, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (8, 1, 1, 1, 1, 1)),
+)
+
 # Published values and ours: the same style in all figures of all papers.
 PUBLISHED = {"color": BLACK, "linestyle": (0, (5, 2)), "linewidth": 1.1}
 OURS = {"color": BLUE, "linestyle": "-", "linewidth": 1.3}
 
 # The one run that a panel shows, and the proven limit that no path can beat.
 RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
-REFERENCE = {"color": BLACK, "linestyle": (0, (6, 1.5, 1, 1.5)), "linewidth": 0.8}
+REFERENCE = {"color": BLACK, "linestyle": DASH_DOT, "linewidth": 0.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
 # How methods look in every figure: colour, dashes of lines, mark. All colours are at least three
 # times as dark as paper, and those that a reader may confuse, whatever his eyes, differ in dashes
 # and marks.
 LOOKS = {
-    "black": ("#000000", (0, (6, 1.5, 1, 1.5)), "s"),
+    "black": ("#000000", DASH_DOT, "s"),
     "vermilion": ("#D55E00", "-", "o"),
-    "blue": ("#0072B2", (0, (5, 1.5)), "^"),
-    "green": ("#008F68", (0, (2, 1)), "D"),
-    "pink": ("#B8578E", (0, (8, 1, 1, 1, 1, 1)), "v"),
+    "blue": ("#0072B2", DASHED, "^"),
+    "green": ("#008F68", DOTTED, "D"),
+    "pink": ("#B8578E", DASH_DOTS, "v"),
     "amber": ("#B97800", (0, (4, 1, 1, 1)), "P"),
-    "purple": ("#4B0055", (0, (5, 1.5)), "X"),
-    "sky": ("#2F8FCB", (0, (6, 1.5, 1, 1.5)), "<"),
-    "brown": ("#8C510A", (0, (2, 1)), ">"),
+    "purple": ("#4B0055", DASHED, "X"),
+    "sky": ("#2F8FCB", DASH_DOT, "<"),
+    "brown": ("#8C510A", DOTTED, ">"),
     "grey": ("#7A7A7A", (0, (1, 1)), "p"),
-    "olive": ("#6B7000", (0, (8, 1, 1, 1, 1, 1)), "h"),
-    "violet": ("#7E67D6", (0, (2, 1)), "d"),
+    "olive": ("#6B7000", DASH_DOTS, "h"),
+    "violet": ("#7E67D6", DOTTED, "d"),
 }
 # What a planner looks like in all studies, unless a study gives its method another look (`looks` in
 # artefacts.yaml).
@@ -158,9 +165,7 @@ def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[st
     return looks
 
 
-def choose_line_styles(
-    values: Sequence[Any], looks: Mapping[str, str] = MappingProxyType({})
-) -> list[dict[str, Any]]:
+def choose_line_styles(values: Sequence[Any], looks: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return a style of line for each of some values side by side.
 
     Numbers get colours of a scale, methods their looks, and other values looks in order. looks:
@@ -170,11 +175,10 @@ def choose_line_styles(
     import matplotlib as mpl
 
     names: list[str] = []
+    black, *others = LOOKS  # black last: it is the baseline's
     for value in values:
-        own = looks.get(value, "")
-        # Black last: it is the baseline's.
-        free = [name for name in [*LOOKS][1:] if name not in names] or [*LOOKS]
-        names.append(own if own and own not in names else free[0])
+        free = (name for name in (looks.get(value), *others) if name and name not in names)
+        names.append(next(free, black))
     colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE](np.linspace(0, _LIGHTEST, len(values)))

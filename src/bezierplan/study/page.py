@@ -5,7 +5,6 @@ from pathlib import Path
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import EVIDENCE, PICTURES, list_files, sort_as_printed
 from bezierplan.figures.page.page_job import (
-    ArtefactView,
     ExperimentView,
     MethodView,
     PageJob,
@@ -51,9 +50,8 @@ def find_results(studies: Studies, scale: str, root: str = RESULTS) -> Shows:
             parts.append(jobs.build_claims(study, scale).shows)
         for part in parts:
             for name, methods in part.items():
-                place = f"{key}/{name}"
                 # Another table or figure may show other methods of the same experiment.
-                behind[place] = behind.get(place, {}) | methods
+                behind.setdefault(f"{key}/{name}", {}).update(methods)
     return behind
 
 
@@ -76,11 +74,8 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
 
 def _describe_study(study: Study, scale: str, root: str) -> StudyView:
     """Return what the page needs to know of a study beside its results."""
-    artefacts = {
-        name: ArtefactView(
-            captions.build_caption(study, name, scale),
-            study.complete_table(name) if name in study.tables else None,
-        )
+    shown = {
+        name: captions.build_caption(study, name, scale)
         for name in list_artefacts(study, scale, root)
     }
     methods = {
@@ -99,13 +94,17 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         methods=methods,
         claims={claim.id: claim for claim in study.claims},
         repeats=_count_repeats(study, scale),
-        tables={name: each for name, each in artefacts.items() if name in study.tables},
-        figures={name: each for name, each in artefacts.items() if name in study.figures},
+        tables={
+            name: (caption, study.complete_table(name))
+            for name, caption in shown.items()
+            if name in study.tables
+        },
+        figures={name: caption for name, caption in shown.items() if name in study.figures},
         assumptions=[
             dict(each) | {"default": find_default(study, each)} for each in study.assumptions
         ],
         files=[
-            *(("claims", "checks") if study.claims else ()),
+            *(("claims", "claim_checks") if study.claims else ()),
             *(("audit",) if has_audit(study) else ()),
         ],
         changes=evidence.list_changes(study),

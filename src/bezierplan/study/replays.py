@@ -6,7 +6,6 @@ import pandas as pd
 
 from bezierplan.analysis import results
 from bezierplan.running import execution, problems
-from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
 from bezierplan.study.experiments import Experiments, build_problems_job
@@ -38,21 +37,14 @@ def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
+    made, moving = problems.build_all(build_problems_job(study, experiment, "full"), study.folder)
+    problem = condition.problem
+    # Only drives have worlds.
+    named, met = ({problem: of[problem]} if of else {} for of in (made, moving))
     try:
-        return _run_again(chunk, condition, int(repeat), study)
+        rows = execution.make_rows_again(chunk, [(condition, int(repeat))], named, met)
     except PlannerFailure as error:
         raise Fault(str(error)) from None
-
-
-def _run_again(
-    chunk: Chunk, condition: Condition, repeat: int, study: Experiments
-) -> results.Results:
-    """Repeat a run, or a drive in a changing world."""
-    made, moving = problems.build_all(
-        build_problems_job(study, chunk.experiment, "full"), study.folder
-    )
-    name = condition.problem
-    named, met = {name: made[name]}, {name: moving[name]} if moving else {}
-    table = pd.DataFrame(execution.make_rows_again(chunk, [(condition, repeat)], named, met))
-    joined = results.join_bounds(table, named, problems.compute_bounds(named, met).to_pandas())
-    return joined._replace(worlds=met, jobs={chunk.method: chunk})
+    bounds = problems.compute_bounds(named, met).to_pandas()
+    joined = results.join_bounds(pd.DataFrame(rows), named, bounds)
+    return joined._replace(worlds=met, jobs={method: chunk})

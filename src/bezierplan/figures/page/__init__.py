@@ -33,10 +33,9 @@ def sort_as_printed(names: Iterable[str]) -> list[str]:
     >>> sort_as_printed(["work", "figure11", "figure2", "table6", "table4"])
     ['table4', 'table6', 'figure2', 'figure11', 'work']
     """
-    numbered = {
-        name: found for name in names if (found := re.fullmatch(r"(table|figure)(\d+)", name))
-    }
-    first = sorted(
-        numbered, key=lambda name: (numbered[name][1] != "table", int(numbered[name][2]))
-    )
-    return [*first, *(name for name in names if name not in numbered)]
+
+    def find_place(name: str) -> tuple[int, ...]:
+        found = re.fullmatch(r"(table|figure)(\d+)", name)
+        return (0, found[1] != "table", int(found[2])) if found else (1,)
+
+    return sorted(names, key=find_place)

@@ -33,8 +33,6 @@ MARKS = {
     "0": ("part", "neither holds"),
     "?": ("open", "not known"),
 }
-# Elements whose blanks mean something.
-_AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
 def gather_content(
@@ -55,14 +53,17 @@ def gather_content(
     """
     tables = [reader.read(file) for file in summary]
     studies = reader.read_study_results(job, folder, tables, evidence)
-    data: dict[str, dict] = {"runs": {}, "problems": {}, "workspaces": {}}
+    data: dict[str, dict] = {"runs": {}, "problems": {}}
     for place, files in (results or {}).items():
         key, _, name = place.partition("/")
         shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
         studies[key].shown += shown
         for kind, own in found.items():
             data[kind] |= own
-    _merge_workspaces(data)
+    data["workspaces"] = _take_out_workspaces(data["problems"])
+    data["studies"] = {
+        key: {"labels": study.job.labels, "shown": study.shown} for key, study in studies.items()
+    }
     repeats = [own.repeats for own in job.studies.values()]
     verified = None
     if proof:
@@ -78,27 +79,20 @@ def gather_content(
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
-        data=data
-        | {
-            "studies": {
-                key: {"labels": study.job.labels, "shown": study.shown}
-                for key, study in studies.items()
-            }
-        },
+        data=data,
     )
 
 
-def _merge_workspaces(data: dict[str, dict]) -> None:
-    """Remove workspaces that equal an earlier one, and let their problems name that one."""
-    # Experiments on the same map would each bring its shapes.
+def _take_out_workspaces(problems: dict[str, Row]) -> dict[str, Row]:
+    """Take the workspaces out of problems, which then name them: the first problem on each."""
+    # Problems on the same map would each bring its shapes.
     first: dict[str, str] = {}
-    names = {
-        name: first.setdefault(json.dumps(shapes), name)
-        for name, shapes in data["workspaces"].items()
-    }
-    data["workspaces"] = {name: data["workspaces"][name] for name in first.values()}
-    for problem in data["problems"].values():
-        problem["workspace"] = names[problem["workspace"]]
+    workspaces: dict[str, Row] = {}
+    for name, problem in problems.items():
+        shapes = problem["workspace"]
+        problem["workspace"] = first.setdefault(json.dumps(shapes), name)
+        workspaces.setdefault(problem["workspace"], shapes)
+    return workspaces
 
 
 def _write_headline(
@@ -125,12 +119,7 @@ def render_page(page: SimpleNamespace, folder: Path) -> str:
 
     folder: where the pictures of its figures are.
     """
-    text = build_environment(page, folder).get_template("page.html.jinja").render(page=page)
-    return "".join(
-        # Blanks around line breaks mean nothing elsewhere, and would make the page larger.
-        part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
-        for part in _AS_WRITTEN.split(text)
-    )
+    return build_environment(page, folder).get_template("page.html.jinja").render(page=page)
 
 
 def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
@@ -152,7 +141,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         keep_trailing_newline=True,
     )
     environment.filters |= {
-        "look": lambda verdict: legend.WORDS.get(verdict, legend.OTHER),
+        "look": lambda verdict: legend.WORDS[verdict],
         "short": format_value,
         "heading": naming.format_heading,
         "amount": naming.format_amount,
@@ -215,9 +204,8 @@ def label_keys(text: Any, labels: Labels) -> str:
 
 def count_verdicts(rows: Iterable[Row]) -> list[tuple[str, int]]:
     """Count the rows of each verdict, in the order of `legend.WORDS`."""
-    found = Counter(filter(None, (row["verdict"] for row in rows)))
-    names = [*legend.WORDS, *sorted(found.keys() - legend.WORDS.keys())]
-    return [(name, found[name]) for name in names if found[name]]
+    found = Counter(row["verdict"] for row in rows)
+    return [(name, found[name]) for name in legend.WORDS if found[name]]
 
 
 def describe_positions(cells: Iterable[Row]) -> str:
@@ -253,28 +241,33 @@ def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
     numbers = table["numbers"]
     values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
     named = [key for key in values if len(values[key]) > 1]
-    columns = list(dict.fromkeys(cell["column"] for cell in numbers))
+    columns: dict[str, list[Row]] = {}
     rows: dict[tuple, dict[str, Row]] = {}
     for cell in numbers:
+        columns.setdefault(cell["column"], []).append(cell)
         rows.setdefault(tuple(cell["keys"].values()), {})[cell["column"]] = cell
     study = table["address"].partition("/")[0]
-    listed = []
-    for cells in rows.values():
-        keys = next(iter(cells.values()))["keys"]
-        words = [
-            (
-                # The column names the key, so a number stands alone.
-                format_value(keys[key])
-                if isinstance(keys[key], int | float)
-                else reader.format_key(key, keys[key], labels),
-                addresses.build_address(study, "method", keys[key]),
-            )
-            for key in named
-        ]
-        primary = any(cell["primary"] for cell in cells.values())
-        listed.append((primary, words, [cells.get(column) for column in columns]))
+
+    listed = [
+        (
+            any(cell["primary"] for cell in cells.values()),
+            [
+                (
+                    # The column names the key, so a number stands alone.
+                    format_value(value)
+                    if isinstance(value, int | float)
+                    else reader.format_key(key, value, labels),
+                    addresses.build_address(study, "method", value),
+                )
+                for key, value in zip(values, place)
+                if key in named
+            ],
+            [cells.get(column) for column in columns],
+        )
+        for place, cells in rows.items()
+    ]
     return SimpleNamespace(
-        head=[labels.get(key, key.replace("_", " ")) for key in named] + columns,
+        head=[*(naming.name_column(key, labels) for key in named), *columns],
         rows=sorted(listed, key=lambda row: not row[0]),
         same=[
             f"{key.replace('_', ' ')}: {reader.format_key(key, next(iter(each)), labels)}"
@@ -282,12 +275,8 @@ def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
             if key not in named
         ],
         decimals=[
-            max(
-                _count_decimals(cell["value_published"])
-                for cell in numbers
-                if cell["column"] == column
-            )
-            for column in columns
+            max(_count_decimals(cell["value_published"]) for cell in own)
+            for own in columns.values()
         ],
     )
 

@@ -1,10 +1,19 @@
 """Places of lines and marks in the charts of the page, which templates draw."""
 
 from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 from bezierplan.analysis.numbers.comparison import NO_RANGE
 from bezierplan.running.columns import Row
+
+# Places on a bar, and the columns of their values.
+_ON_BAR = {
+    "ours": "beside",
+    "printed": "value_published",
+    "low": "low95_predicted",
+    "high": "high95_predicted",
+}
 
 
 def add_bars(cells: list[Row]) -> None:
@@ -19,23 +28,24 @@ def add_bars(cells: list[Row]) -> None:
         if cell["value_published"] is not None and cell["position"] not in (None, NO_RANGE):
             columns.setdefault(cell.get("table_column", cell["column"]), []).append(cell)
     for column in columns.values():
-        marks = [(cell["beside"], cell["value_published"]) for cell in column]
-        ends = [(cell["low95_predicted"], cell["high95_predicted"]) for cell in column]
-        reach = [each for pair in marks + ends for each in pair if each is not None]
+        reach = _list_known(column, *_ON_BAR.values())
         low, high = min(reach), max(reach)
         # Of equal numbers any width will do that is not 0.
         width = high - low or 1.0
-        for cell, (ours, printed), (left, right) in zip(column, marks, ends, strict=True):
+        # An open end is that of the axis.
+        ends = {"low": low, "high": high}
+        for cell in column:
+            known = {name: cell[key] for name, key in _ON_BAR.items() if cell[key] is not None}
             # From 4 to 96, because marks at the ends need room.
             cell["bar"] = {
                 name: round(4 + 92 * (value - low) / width, 1)
-                for name, value in (
-                    ("ours", ours),
-                    ("printed", printed),
-                    ("low", low if left is None else left),
-                    ("high", high if right is None else right),
-                )
+                for name, value in (ends | known).items()
             }
+
+
+def _list_known(rows: list[Row], *columns: str) -> list[float]:
+    """Return the values of some columns that rows have."""
+    return [row[name] for row in rows for name in columns if row[name] is not None]
 
 
 def group_comparisons(comparisons: list[Row]) -> list[list[Row]]:
@@ -44,12 +54,10 @@ def group_comparisons(comparisons: list[Row]) -> list[list[Row]]:
     A strip has places from 0 to 100 on the scale of its group: effect, ends, reference, printed
     effect and margin.
     """
-    groups = []
-    kind = ("check", "test", "metric", "statistic", "unit", "primary")
-    for _, rows in groupby(comparisons, key=lambda row: [row[name] for name in kind]):
-        group = list(rows)
+    kind = itemgetter("check", "test", "metric", "statistic", "unit", "primary")
+    groups = [list(rows) for _, rows in groupby(comparisons, key=kind)]
+    for group in groups:
         _add_strips(group)
-        groups.append(group)
     return groups
 
 
@@ -58,11 +66,10 @@ def _add_strips(rows: list[Row]) -> None:
 
     Intervals end at three times the largest effect, so that a wide one does not flatten the others.
     """
-    effects = [row[name] for row in rows for name in ("effect", "effect_published")]
-    effects = [effect for effect in effects if effect is not None]
+    effects = _list_known(rows, "effect", "effect_published")
     most = 3 * max(map(abs, effects), default=0.0) or 1.0
-    ends = [row[name] for row in rows for name in ("low95", "high95") if row[name] is not None]
-    reach = [row["reference"] for row in rows] + effects
+    ends = _list_known(rows, "low95", "high95")
+    reach = _list_known(rows, "reference") + effects
     reach += [min(max(end, -most), most) for end in ends]
     pad = 0.06 * (max(reach) - min(reach)) or 1.0
     low, high = min(reach) - pad, max(reach) + pad
@@ -75,8 +82,7 @@ def _add_strips(rows: list[Row]) -> None:
     for row in rows:
         names = ("reference", "effect", "low95", "high95", "effect_published")
         margin = row["margin"] and [place(-abs(row["margin"])), place(abs(row["margin"]))]
-        beyond = [row[name] for name in ("low95", "high95") if row[name] is not None]
         row["strip"] = {name: place(row[name]) for name in names} | {
             "margin": margin,
-            "cut": any(not low <= end <= high for end in beyond),
+            "cut": any(not low <= end <= high for end in _list_known([row], "low95", "high95")),
         }

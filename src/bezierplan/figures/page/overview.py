@@ -41,14 +41,10 @@ def select_claims_of_paper(study: SimpleNamespace) -> list[Row]:
     return [claim for claim in study.claims if not claim["finding"]]
 
 
-def find_group(claim: Row) -> str:
-    """Return the group in which the verdict of a claim counts."""
-    return legend.WORDS.get(claim["verdict"], legend.OTHER).group
-
-
 def select_failing(study: SimpleNamespace) -> list[Row]:
     """Return the claims of a paper that fail, also those that do by a criterion of ours."""
-    return [claim for claim in select_claims_of_paper(study) if find_group(claim) == "fail"]
+    claims = select_claims_of_paper(study)
+    return [claim for claim in claims if legend.WORDS[claim["verdict"]].group == "fail"]
 
 
 def select_counted(study: SimpleNamespace) -> list[Row]:

@@ -19,14 +19,6 @@ class MethodView(NamedTuple):
     """The docstring of its planner's file."""
 
 
-class ArtefactView(NamedTuple):
-    """A table or figure of the page."""
-
-    caption: Caption
-    spec: TableEntry | None = None
-    """The entry of a table, with the published numbers of the one that it extends."""
-
-
 class ExperimentView(NamedTuple):
     """An experiment whose runs the viewer may show."""
 
@@ -52,25 +44,18 @@ class StudyView(NamedTuple):
     """The least and the largest number of runs of a method under a condition; empty for a study
     without experiments.
     """
-    tables: dict[str, ArtefactView]
-    figures: dict[str, ArtefactView]
+    tables: dict[str, tuple[Caption, TableEntry]]
+    """With their entries, which have the published numbers of the table that they extend."""
+    figures: dict[str, Caption]
     assumptions: list[dict[str, Any]]
     """Details that the paper leaves open: the keys of their file, with the default in use."""
     files: list[str]
-    """The names of `FILES` that exist."""
+    """Its other tables, as far as there are any: claims, claim_checks, audit."""
     changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
     experiments: dict[str, ExperimentView]
     answer: tuple[str, str] | None = None
     """Title and text of the README's outcome."""
-
-
-FILES = {
-    "claims": "claims.csv",
-    "checks": "claim_checks.csv",
-    "audit": "audit.csv",
-}
-"""Tables of a study: claims, comparisons of claims, audit."""
 
 
 class PageJob(NamedTuple):

@@ -13,10 +13,12 @@ from bezierplan.analysis import naming
 from bezierplan.analysis.claims import sentences
 from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import methods
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.results import list_key_columns
+from bezierplan.analysis.table_kinds import Pivot, TableEntry
+from bezierplan.figures.caption import Caption
 from bezierplan.figures.page import charts
 from bezierplan.figures.page.addresses import build_address, build_cell_addresses
-from bezierplan.figures.page.page_job import FILES, ArtefactView, PageJob, StudyView
+from bezierplan.figures.page.page_job import PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
 
@@ -49,9 +51,9 @@ class Evidence(NamedTuple):
     checks: pd.DataFrame
     order_and_level: pd.DataFrame
 
-    def select(self, studies: list[str]) -> "Evidence":
-        """Return the evidence about some studies."""
-        return Evidence(*(table[table["study"].isin(studies)] for table in self))
+    def select(self, study: str) -> "Evidence":
+        """Return the evidence about a study."""
+        return Evidence(*(table[table["study"] == study] for table in self))
 
 
 def read_study_results(
@@ -65,28 +67,31 @@ def read_study_results(
     summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
     stands in place of the scale's own positions and verdicts.
     """
-    numbers, _, measured = summary or [pd.DataFrame(columns=["study"])] * 3
+    nothing = pd.DataFrame(columns=["study", "table", "metric", "quantity"])
+    numbers, _, measured = summary or [nothing] * 3
     pages = {}
     for key, view in job.studies.items():
-        files = dict.fromkeys(FILES, pd.DataFrame())
-        files |= {name: read(folder / key / FILES[name]) for name in view.files}
-        substitute = evidence.select([key]) if evidence and key in job.outcome else None
-        if substitute:
-            files |= {"claims": substitute.claims, "checks": substitute.checks}
-        claims = _list_claims(key, view, files)
-        counted = numbers[numbers["study"] == key]
-        own_tables = [
-            _describe_table(key, name, each, folder, view.labels, counted, substitute)
-            for name, each in view.tables.items()
-        ]
-        of_problems = substitute.methods if substitute else measured[measured["study"] == key]
+        files = dict.fromkeys(("claims", "claim_checks", "audit"), nothing)
+        files |= {name: read(folder / key / f"{name}.csv") for name in view.files}
+        counted, of_problems = (table[table["study"] == key] for table in (numbers, measured))
+        many = Evidence(*[nothing] * 5)
+        if evidence and key in job.outcome:
+            many = evidence.select(key)
+            files |= {"claims": many.claims, "claim_checks": many.checks}
+            of_problems = many.methods
         pages[key] = SimpleNamespace(
             key=key,
             job=view,
-            claims=claims,
-            tables=own_tables,
+            claims=_list_claims(key, view, files),
+            tables=[
+                _describe_table(
+                    _describe_artefact(key, name, caption), spec, folder, view.labels, counted, many
+                )
+                for name, (caption, spec) in view.tables.items()
+            ],
             figures=[
-                _describe_figure(key, name, each, folder) for name, each in view.figures.items()
+                _describe_figure(_describe_artefact(key, name, caption), folder)
+                for name, caption in view.figures.items()
             ],
             methods=[_describe_method(key, name, each) for name, each in view.methods.items()],
             assumptions=[_describe_assumption(key, each, view.labels) for each in view.assumptions],
@@ -118,11 +123,11 @@ def _describe_method(study: str, name: str, method: Any) -> Row:
     }
 
 
-def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
+def _describe_artefact(study: str, name: str, caption: Caption) -> Row:
     """Return the caption's parts of a table or figure, its address, and the path of its files
     without endings.
     """
-    return artefact.caption._asdict() | {
+    return caption._asdict() | {
         "name": name,
         "address": build_address(study, name),
         "stem": f"{study}/{choose_tree(name)}/{name}",
@@ -130,9 +135,8 @@ def _describe_artefact(study: str, name: str, artefact: Any) -> Row:
     }
 
 
-def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
+def _describe_figure(row: Row, folder: Path) -> Row:
     """Return a figure with its notes: the runs that it shows, and what can be counted in it."""
-    row = _describe_artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8")
     # The first line is the caption, which the page has from its job.
     _, runs, *counts = text.split("\n", 2)
@@ -140,37 +144,30 @@ def _describe_figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
 
 
 def _describe_table(
-    study: str,
-    name: str,
-    artefact: ArtefactView,
+    row: Row,
+    spec: TableEntry,
     folder: Path,
     labels: Labels,
     counted: pd.DataFrame,
-    evidence: Evidence | None,
+    evidence: Evidence,
 ) -> Row:
     """Return a table: its numbers next to published ones, or its columns and rows."""
-    row, spec = _describe_artefact(study, name, artefact), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])
     if not compared:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": list_rows(table)}
-    counted = counted[counted["table"] == name] if len(counted) else counted
-    many = evidence.numbers[evidence.numbers["table"] == name] if evidence else pd.DataFrame()
+    counted, many, columns = (
+        rows[rows["table"] == row["name"]]
+        for rows in (counted, evidence.numbers, evidence.order_and_level)
+    )
     cells = _list_numbers(row["address"], table, spec, counted, many, labels)
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
-    columns = (
-        evidence.order_and_level[evidence.order_and_level["table"] == name]
-        if evidence
-        else pd.DataFrame()
-    )
-    row["order_and_level"] = (
-        _describe_order_and_level(columns, spec, labels) if len(columns) else ""
-    )
     return row | {
         "numbers": cells,
         "laid": _lay_out_table(folder / f"{row['stem']}.csv", spec, cells),
+        "order_and_level": _describe_order_and_level(columns, spec, labels),
     }
 
 
@@ -200,7 +197,7 @@ def _format_range(low: pd.Series, high: pd.Series) -> str:
     return " to ".join(dict.fromkeys(ends))
 
 
-def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
+def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
     """Lay a table out as the paper prints it.
 
     head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
@@ -208,12 +205,12 @@ def _lay_out_table(file: Path, spec: Pivot, cells: list[Row]) -> Row:
     """
     ours = pd.read_csv(file, dtype=str, keep_default_na=False)
     heads = len(spec.index)
-    numbers = {(cell["table_row"], cell["table_column"]): cell for cell in cells}
+    placed = {(cell["table_row"], cell["table_column"]): cell for cell in numbers}
     rows = []
     for row, texts in enumerate(ours.to_numpy().tolist()):
-        own = [numbers.get((row, column)) for column in range(len(texts) - heads)]
-        printed = [cell["as_printed"] if cell else "" for cell in own]
-        rows.append((texts[:heads], list(zip(printed, texts[heads:], own, strict=True))))
+        cells = [(text, placed.get((row, n))) for n, text in enumerate(texts[heads:])]
+        both = [(cell["as_printed"] if cell else "", text, cell) for text, cell in cells]
+        rows.append((texts[:heads], both))
     return {"head": list(ours), "rows": rows, "note": spec.note}
 
 
@@ -232,15 +229,14 @@ def _list_numbers(
     (printed names), address, beside (ours for the paper's number of runs), bar
     (`charts.add_bars`).
     """
-    keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
+    keys = list_key_columns(comparison)
     what = ["metric", "statistic"]
     published = comparison["value_published"].notna()
     # `summary.list_numbers` keeps the order of a table's rows.
     comparison["counted"] = False
     if len(counted):
         comparison.loc[published, "counted"] = counted["counted"].to_numpy()
-    printed = comparison.loc[published, what].drop_duplicates()
-    cells = list_rows(comparison.merge(printed, on=what))
+    cells = list_rows(comparison.groupby(what).filter(lambda rows: published[rows.index].any()))
     positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
     by_place = {
         build_address(*(row[name] for name in positions[0])): row for row in list_rows(many)
@@ -284,21 +280,20 @@ def _format_heading(metric: str, statistic: str, spec: Pivot, labels: Labels) ->
 
 def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame]) -> list[Row]:
     """Return claims in their primary variant, each with its other variants (`others`)."""
-    compared: dict[tuple, list[Row]] = {}
-    for row in list_rows(files["checks"]):
-        compared.setdefault((row["id"], row["variant"]), []).append(row)
     names = sentences.name_variants([*content.claims.values()], content.labels)
-    claims: dict[str, Row] = {}
-    others: dict[str, list[Row]] = {}
-    for row in list_rows(files["claims"]):
+    rows, checks = list_rows(files["claims"]), list_rows(files["claim_checks"])
+    claims = []
+    for row in rows:
         if row["primary"]:
-            comparisons = compared.get((row["id"], row["variant"]), [])
-            named = {"variant": names.get(row["variant"] or "", "")}
-            claims[row["id"]] = _describe_claim(study, row, comparisons, content) | named
-        else:
-            other = row | {"variant": names.get(row["variant"], row["variant"])}
-            others.setdefault(row["id"], []).append(other)
-    return [claim | {"others": others.get(name, [])} for name, claim in claims.items()]
+            same = [each for each in rows if each["id"] == row["id"] and not each["primary"]]
+            others = [
+                each | {"variant": names.get(each["variant"], each["variant"])} for each in same
+            ]
+            place = row["id"], row["variant"]
+            own = [check for check in checks if (check["id"], check["variant"]) == place]
+            named = {"variant": names.get(row["variant"] or "", ""), "others": others}
+            claims.append(_describe_claim(study, row, own, content) | named)
+    return claims
 
 
 def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
@@ -334,7 +329,7 @@ def _describe_assumption(study: str, row: Row, labels: Labels) -> Row:
     """
     default = row["default"]
     if isinstance(default, dict):
-        values = {labels.get(name, name): value for name, value in default.items()}
-        one, *others = dict.fromkeys(map(str, values.values()))
-        default = ", ".join(f"{name}: {values[name]}" for name in values) if others else one
+        one, *others = {*map(str, default.values())}
+        each = (f"{labels.get(name, name)}: {value}" for name, value in default.items())
+        default = ", ".join(each) if others else one
     return row | {"address": build_address(study, row["id"]), "default": default}

@@ -45,8 +45,8 @@ def choose_runs(
 ) -> tuple[list[Row], Row]:
     """Choose the runs of an experiment that the viewer shows.
 
-    Returns which runs these are, by method and problem; and `runs`, `problems` and `workspaces` by
-    name. All other runs give only their lengths.
+    Returns which runs these are, by method and problem; and `runs` and `problems` by name. All
+    other runs give only their lengths.
     """
     bounds = parquet.read_table(inputs.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if content.moves else [])]
@@ -86,15 +86,11 @@ def choose_runs(
     for name, trace in traces.items():
         row = by_name[name]
         runs[name] |= _describe_drive(runs[name]["path"], trace, row, moving[row["problem"]].pace)
-    ids = rows["problem"].unique()
-    workspaces = {prefix + name: _list_shapes(made[name]) for name in ids}
     problems = {
-        prefix + name: _describe_problem(
-            prefix + name, made[name], moving.get(name), bounds.loc[name]
-        )
-        for name in ids
+        prefix + name: _describe_problem(made[name], moving.get(name), bounds.loc[name])
+        for name in rows["problem"].unique()
     }
-    return choice, {"runs": runs, "workspaces": workspaces, "problems": problems}
+    return choice, {"runs": runs, "problems": problems}
 
 
 def _read_traces(chunks: list[str], ids: list[str]) -> dict[str, np.ndarray]:
@@ -119,25 +115,21 @@ def _choose_runs_of_method(experiment: str, problem: str, method: str, runs: pd.
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
     ordered = sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
-    gap, median = ordered[(len(ordered) - 1) // 2] if ordered else (np.inf, None)
+    # Where no run is feasible, one without a name stands for all three.
+    ordered = ordered or [(np.inf, None)]
+    gap, median = ordered[(len(ordered) - 1) // 2]
     return {
         "experiment": experiment,
         "problem": problem,
         "method": method,
         "count": len(runs),
-        "feasible": len(ordered),
+        "feasible": len(feasible),
         "gap": _round_finite(gap),
-        "best": ordered[0][1] if ordered else None,
+        "best": ordered[0][1],
         "median": median,
-        "worst": ordered[-1][1] if ordered else None,
+        "worst": ordered[-1][1],
         "failed": runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED],
     }
-
-
-def _list_shapes(problem: Problem) -> Row:
-    """Return the workspace of a problem as plain values with its bounds."""
-    shapes = _round_json(files.write_json(problem.workspace))
-    return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
 def _round_json(text: str) -> Row:
@@ -145,14 +137,15 @@ def _round_json(text: str) -> Row:
     return json.loads(text, parse_float=lambda number: float(f"{float(number):.7g}"))
 
 
-def _describe_problem(
-    workspace: str, problem: Problem, world: worlds.World | None, bound: pd.Series
-) -> Row:
-    """Return a problem with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
+def _describe_problem(problem: Problem, world: worlds.World | None, bound: pd.Series) -> Row:
+    """Return a problem with its workspace as plain values, start, target and the exact shortest
+    path (x0, y0, x1, y1, ...).
+    """
     size = _measure_side(problem.workspace.bounds)
     path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
     return {
-        "workspace": workspace,
+        "workspace": _round_json(files.write_json(problem.workspace))
+        | {"bounds": list(problem.workspace.bounds)},
         "world": None if world is None else _describe_world(world),
         "start": problem.start,
         "target": problem.target,

@@ -18,12 +18,10 @@ tables inside the functions that need them.
 from __future__ import annotations
 
 import functools
-import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -77,8 +75,7 @@ EACH = (
 )
 
 
-@dataclass(frozen=True)
-class Sources:
+class Sources(NamedTuple):
     """The sources of a figure's panels.
 
     results: by experiment. workspaces, problems: by name, if they are drawn without runs.
@@ -87,29 +84,12 @@ class Sources:
     it.
     """
 
-    results: Mapping[str, Results] = field(default_factory=dict)
-    workspaces: Mapping[str, Any] = field(default_factory=dict)
-    functions: Mapping[str, Callable[..., pd.DataFrame]] = field(default_factory=dict)
-    published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
-    problems: Mapping[str, Problem] = field(default_factory=dict)
+    results: Mapping[str, Results] = {}
+    workspaces: Mapping[str, Any] = {}
+    functions: Mapping[str, Callable[..., pd.DataFrame]] = {}
+    published: Mapping[str, pd.DataFrame] = {}
+    problems: Mapping[str, Problem] = {}
     alternatives: Sequence[tuple[dict[str, str], pd.DataFrame]] = ()
-    _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
-
-    def build_table(self, panel: TablePanel) -> pd.DataFrame:
-        """Build the table of a panel with a function of the study, once for all panels that draw
-        the same one.
-
-        The function gets the workspace and the published tables that the panel names, and its
-        arguments.
-        """
-        # As text, because arguments may be lists, which cannot be keys.
-        call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
-        if call not in self._tables:
-            first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
-            if names := convert_to_list(panel.published):
-                first.append({name: self.published[name] for name in names})
-            self._tables[call] = self.functions[panel.data](*first, **panel.arguments)
-        return self._tables[call]
 
 
 class Panel(Model, ABC):
@@ -186,11 +166,17 @@ class TablePanel(Panel):
     )
 
     def source(self, sources: Sources) -> Any:
-        """Return the rows of the function's table that are shown."""
+        """Return the rows of the function's table that are shown.
+
+        The function gets the workspace and the published tables that the panel names, and its
+        arguments.
+        """
         from bezierplan.analysis.results import select
 
-        # A copy, because several panels may share the table.
-        return select(sources.build_table(self), self.where).copy()
+        given = [] if self.workspace is None else [sources.workspaces[self.workspace]]
+        if names := convert_to_list(self.published):
+            given.append({name: sources.published[name] for name in names})
+        return select(sources.functions[self.data](*given, **self.arguments), self.where)
 
 
 class MetricPanel(RunsPanel):
@@ -242,11 +228,14 @@ class Pick(Model):
         return self
 
 
-PICK = (
-    "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that have more than 0 of it, and with layout: column, only "
-    "of the layout in which that varies most"
-)
+Picked = Annotated[
+    Pick,
+    Field(
+        description="which run: {lowest: column} or {median: column} of the feasible ones, or "
+        "{repeat: number}; with having: metric, only of those that have more than 0 of it, and "
+        "with layout: column, only of the layout in which that varies most"
+    ),
+]
 
 
 def require_one(panel: Model, *keys: str) -> None:
@@ -270,22 +259,17 @@ def find_only(runs: pd.DataFrame, column: str) -> Any:
     return values[0]
 
 
-def _find_places() -> dict[str, str]:
-    """Return the file of each kind of panel."""
-    return find_kinds("figures/panels", "panels")
-
-
 def load_kind(name: str) -> ModuleType:
     """Load the file of a kind of panel. Raises KeyError if there is none."""
-    return load_module(_find_places()[name])
+    return load_module(find_kinds("figures/panels", "panels")[name])
 
 
 def build_panel(keys: dict[str, Any]) -> Panel:
     """Build the panel of a job from its plain values."""
-    return load_kind(keys["kind"]).Options.model_validate(keys)
+    return list_kinds()[keys["kind"]].model_validate(keys)
 
 
 @functools.cache
 def list_kinds() -> dict[str, type[Panel]]:
     """Return the options of the panels of each kind."""
-    return {name: load_kind(name).Options for name in _find_places()}
+    return {name: load_kind(name).Options for name in find_kinds("figures/panels", "panels")}

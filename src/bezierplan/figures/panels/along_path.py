@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
+from bezierplan.figures.panels import Note, Picked, RunsPanel
 from bezierplan.figures.panels.paths import choose_run, describe_run
 from bezierplan.geometry import curves
 from bezierplan.schema.model import Number
@@ -31,9 +31,9 @@ _JOINT = {"color": style.BLUE, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
 
 
 class Options(RunsPanel):
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    one = ("problem", "method")
 
-    pick: Pick = Field(description=PICK)
+    pick: Picked
     quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
     limit: Number = Field(math.nan, description="the published limit, a number")
 

@@ -77,10 +77,8 @@ def data(source: pd.DataFrame, options: Options) -> pd.DataFrame:
         columns=["assumption", "detail", "value", *_COMPARED, "effect", "low95", "high95", "mark"]
     )
     moved = (frame["effect"] - frame["effect"].iloc[0]).abs().fillna(np.inf)
-    by = {"moved": moved.groupby(frame["assumption"]).transform("max"), "later": frame.index > 0}
-    ascending = {"later": True, "moved": False, "assumption": True, "effect": True}
-    order = frame.assign(**by).sort_values([*ascending], ascending=[*ascending.values()])
-    return order.drop(columns=[*by])
+    by = {"later": frame.index > 0, "near": -moved.groupby(frame["assumption"]).transform("max")}
+    return frame.assign(**by).sort_values([*by, "assumption", "effect"]).drop(columns=[*by])
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -122,9 +120,8 @@ def _name_rows(axes: Axes, frame: pd.DataFrame) -> np.ndarray:
     for _, values in frame.groupby("assumption", sort=False):
         if top:
             axes.axhline(top - gap / 2, color="0.88", linewidth=0.5, zorder=0)
-        lines = textwrap.wrap(values["detail"].iloc[0], _LETTERS)
-        rows = max(len(values), len(lines))
-        text = "\n".join(lines)
+        text = textwrap.fill(values["detail"].iloc[0], _LETTERS)
+        rows = max(len(values), len(text.splitlines()))
         place = (0, top + rows / 2)
         axes.annotate(text, place, (-beside, 0), va="center", linespacing=1.05, **words)
         places.append(top + (rows - len(values) + 1) / 2 + np.arange(len(values)))
@@ -143,5 +140,5 @@ def _name_effect(row: pd.Series, is_share: bool, scene: Any) -> str:
     if is_share:
         return f"share of runs: {metric}"
     unit = "share of the other" if row["scale"] == "relative" else row["unit"]
-    unit = "" if unit in ("-", "") or unit != unit else f" ({unit})"
-    return f"difference in {metric}{unit}"
+    beside = f" ({unit})" if isinstance(unit, str) and unit not in ("-", "") else ""
+    return f"difference in {metric}{beside}"

@@ -61,19 +61,14 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     Raises KeyError for an unknown metric or column.
     """
     keys, metric, statistic = [options.x, options.hue], options.metric, options.statistic
-    frame = compute_summary(results, keys, metric, statistic)
     runs = results.runs.sort_values("id")
-    groups = dict(iter(runs.groupby(keys)))
-    bounds = runs[runs["feasible"]].groupby(keys)["bound"].mean() if metric in _BOUNDED else {}
-    bars = list(zip(frame[options.x], frame[options.hue]))
+    bounds = runs[runs["feasible"] & (metric in _BOUNDED)].groupby(keys)["bound"].mean()
     theirs = [
-        find_published(results._replace(runs=groups[bar]), metric, options.printed, statistic)
-        for bar in bars
+        find_published(results._replace(runs=own), metric, options.printed, statistic)
+        for _, own in runs.groupby(keys)
     ]
-    return frame.assign(
-        bound=[bounds.get(bar, np.nan) for bar in bars],
-        published=[next(iter(numbers), np.nan) for numbers in theirs],
-    )
+    frame = compute_summary(results, keys, metric, statistic).join(bounds, on=keys)
+    return frame.assign(published=[next(iter(numbers), np.nan) for numbers in theirs])
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

@@ -4,7 +4,7 @@ each method.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 class Options(RunsPanel):
-    rerun: ClassVar[bool] = True
-    one: ClassVar[tuple[str, ...]] = ("problem",)
-    drives: ClassVar[bool] = True
+    rerun = True
+    one = ("problem",)
+    drives = True
 
     repeat: Repeat = Field(
         0, description="which run of each method is shown, a whole number; left out: 0"

@@ -23,7 +23,7 @@ from bezierplan.figures.groups import (
     find_published,
     show_metric,
 )
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, require_one
+from bezierplan.figures.panels import Note, Pick, Picked, RunsPanel, require_one
 from bezierplan.figures.panels.paths import choose_run, describe_feasible_runs, describe_run
 from bezierplan.running.columns import Row
 from bezierplan.schema.model import Column, PrintedTable, Whole, build_error
@@ -45,7 +45,7 @@ _MOST_BANDS, _MOST_ENDS = 3, 5
 
 
 class Options(RunsPanel):
-    pick: Pick = Field(None, description=PICK)
+    pick: Picked = None
     hue: Column = Field(
         None,
         description="instead of pick, a column of the runs table: a line for each of its values",
@@ -96,11 +96,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless
     all runs are of one problem and one method.
     """
-    runs = results.runs
-    generations = max(
-        runs["history"].map(len).max(), -1 if options.until is None else options.until + 1
-    )
-    shared = find_limits(runs)
+    # Without `until`, as many as the longest run has.
+    generations = max(results.runs["history"].map(len).max(), (options.until or -1) + 1)
+    shared = find_limits(results.runs)
     if options.pick is not None:
         frame = _build_rows_of_run(results, options.pick, generations)
     else:
@@ -173,21 +171,16 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             axes.axhline(frame[name].iloc[0], zorder=3.5, **look)
     if options.hue is not None:
         return _draw_groups(axes, frame, scene, options)
-    _draw_one_run(axes, frame, context=options.context)
-    show_metric(axes, "objective", scene)
-    return Note("", describe_run(frame, describe_feasible_runs(frame)))
-
-
-def _draw_one_run(axes: Axes, frame: pd.DataFrame, *, context: bool) -> None:
-    """Draw the history of a run, with context over the spread of all runs."""
     generation = frame["generation"]
-    if context:
+    if options.context:
         band = {"color": style.LIGHT_BLUE, "linewidth": 0, "label": "quartiles of all runs"}
         axes.fill_between(generation, frame["quartile1"], frame["quartile3"], **band)
         axes.plot(generation, frame["median"], label="median of all runs", **style.OURS)
     if frame["objective"].notna().any():
-        label = "run shown" if context else None
+        label = "run shown" if options.context else None
         axes.plot(generation, frame["objective"], label=label, **style.RUN_SHOWN)
+    show_metric(axes, "objective", scene)
+    return Note("", describe_run(frame, describe_feasible_runs(frame)))
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

@@ -29,10 +29,10 @@ _FILL = {
 }
 _NO_FILL = {"facecolor": style.FREE, "edgecolor": "0.4"}
 _LINE = {
-    "first": {"color": style.BLUE, "linestyle": "-", "linewidth": 1.3},
-    "second": {"color": style.RED, "linestyle": (0, (5, 1.5)), "linewidth": 1.3},
-    "third": {"color": style.BLACK, "linestyle": (0, (2, 1)), "linewidth": 1.1},
-    "accent": {"color": style.RED, "linestyle": "-", "linewidth": 1.8},
+    "first": style.OURS,
+    "second": {"color": style.RED, "linestyle": style.DASHED, "linewidth": 1.3},
+    "third": {"color": style.BLACK, "linestyle": style.DOTTED, "linewidth": 1.1},
+    "accent": style.RUN_SHOWN,
     "muted": {"color": "0.6", "linestyle": (0, (4, 2)), "linewidth": 0.8},
     "note": {"color": style.BLACK, "linestyle": "-", "linewidth": 0.7},
 }

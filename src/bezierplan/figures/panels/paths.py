@@ -6,7 +6,7 @@ Or several paths in one workspace, a run chosen for each value of a column.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -15,7 +15,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import count_runs, describe_axis, find_published
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, find_only, require_one
+from bezierplan.figures.panels import Note, Pick, Picked, RunsPanel, Sources, find_only, require_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.running.columns import Row
@@ -50,13 +50,15 @@ _WIDEST, _NARROWEST = 2.0, 1.0
 # Curves without points that bend them: the corners of one lie on it, the other has tangents.
 _UNCONTROLLED = ("polyline", "ferguson")
 
-_CONTROL_POINT = style.build_mark_style("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
+_CONTROL_POINTS = style.build_mark_style(
+    "o", 4.5, style.BLUE, markerfacecolor=style.FREE, label="control points", zorder=5
+)
 
 # In the order of the legend.
 LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
-    "control": {**_CONTROL_POINT, "label": "control points"},
-    "points": {**_CONTROL_POINT, "label": "control points"},
+    "control": _CONTROL_POINTS,
+    "points": _CONTROL_POINTS,
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "collision": style.build_mark_style("X", 8, style.BLACK, label="first collision", zorder=6),
@@ -73,7 +75,7 @@ _CHANGED = {
     },
     "vanished": {
         "edgecolor": style.BLUE,
-        "linestyle": (0, (2, 1)),
+        "linestyle": style.DOTTED,
         "hatch": "....",
         "label": "free since the change",
     },
@@ -140,10 +142,10 @@ class Options(RunsPanel):
     With hue, `one` is meant for each of its values.
     """
 
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    one = ("problem", "method")
 
     experiment: Experiment = Field(None, description="the name of an experiment")
-    pick: Pick = Field(None, description=PICK)
+    pick: Picked = None
     explicit: Explicit = Field(
         None, description="instead of experiment and pick, {curve, points}: a path without a run"
     )
@@ -159,7 +161,7 @@ class Options(RunsPanel):
         "length",
         description="with hue, the metric whose value is written for each path; left out: length",
     )
-    letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
+    letters: workspaces.Letters = None
     changed_from: Annotated[Line, Names("problem of runs")] = Field(
         None,
         description="the name of another problem of the experiment, on cells as many: those that "
@@ -231,9 +233,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             for value, runs in groups
         ]
         numbers = metrics.compute_values(results.runs, options.measure, results.problems)
-        by_run = numbers.groupby(results.runs["id"]).first()
         frame = pd.concat(frames, ignore_index=True)
-        return frame.assign(measure=frame["run"].map(by_run))
+        return frame.assign(measure=frame["run"].map(dict(zip(results.runs["id"], numbers))))
     run, names = choose_run(results, options.pick)
     problem = results.problems[names["problem"]]
     places = {"start": [problem.start], "target": [problem.target]}

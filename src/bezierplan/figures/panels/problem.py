@@ -22,7 +22,7 @@ class Options(Panel):
         description="the name of a problem, followed by the number of a layout and that of its "
         "obstacles if it has layouts, such as `case1_0_20`"
     )
-    letters: workspaces.Letters = Field(None, description=workspaces.LETTERS)
+    letters: workspaces.Letters = None
 
     def source(self, sources: Sources) -> Problem:
         """Return the problem that the panel names."""

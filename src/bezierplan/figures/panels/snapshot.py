@@ -4,24 +4,23 @@ current plan and dropped plans.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, find_only
+from bezierplan.figures.panels import Note, Picked, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.schema.model import build_value_type, is_number
+from bezierplan.figures.panels.paths import choose_run
+from bezierplan.schema.model import build_number_type
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
     from bezierplan.analysis.results import Results
-    from bezierplan.running.simulation.motion_check import Verdict
     from bezierplan.running.simulation.robot import Ride
-    from bezierplan.workspaces.problem import Problem
     from bezierplan.workspaces.worlds import World
 
 # The arrow of a circle shows where it will be after this many steps; a longer way is cut off at
@@ -38,7 +37,7 @@ _LOOK: dict[str, dict[str, Any]] = {
     "plan": {
         "color": style.BLUE,
         "linewidth": 1.2,
-        "linestyle": (0, (5, 1.5)),
+        "linestyle": style.DASHED,
         "zorder": 3,
         "label": "current plan",
         "clip_on": True,
@@ -51,14 +50,14 @@ _LOOK: dict[str, dict[str, Any]] = {
 
 
 class Options(RunsPanel):
-    rerun: ClassVar[bool] = True
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
-    drives: ClassVar[bool] = True
+    rerun = True
+    one = ("problem", "method")
+    drives = True
 
-    pick: Pick = Field(description=PICK)
-    at: Annotated[
-        float, build_value_type(lambda share: is_number(share) and 0 <= share <= 1, "")
-    ] = Field(description="the moment, as a share of the time of the drive, a number from 0 to 1")
+    pick: Picked
+    at: build_number_type(ge=0, le=1) = Field(
+        description="the moment, as a share of the time of the drive, a number from 0 to 1"
+    )
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -71,63 +70,52 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     Raises ValueError for runs of several problems or methods, and if no run is found.
     """
-    from bezierplan.analysis.results import pick as picked
+    import pandas as pd
+
     from bezierplan.running import execution
 
-    for column in ("problem", "method"):
-        find_only(results.runs, column)
-    run = picked(results.runs, options.pick.plain())
+    run, _ = choose_run(results, options.pick)
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
     ride, verdict = execution.drive_again(results.jobs[run["method"]], run, problem, world)
-    frame = build_moment(world, problem, ride, verdict, options.at)
-    return frame.assign(
-        problem=run["problem"],
-        method=run["method"],
-        run=run["id"],
-        time=options.at * ride.motion.times[-1],
-    )
+    time = options.at * ride.motion.times[-1]
+    frame = _list_places(world, ride, verdict.collision_at, time)
+    names = {"problem": run["problem"], "method": run["method"], "run": run["id"], "time": time}
+    return pd.concat([frame, workspaces.list_ends(problem)], ignore_index=True).assign(**names)
 
 
-def build_moment(
-    world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float
-) -> pd.DataFrame:
-    """Return the rows of a moment. at: the moment, as a share of the time of the drive."""
+def _list_places(world: World, ride: Ride, collision_at: float, time: float) -> pd.DataFrame:
+    """Return the rows of a moment, without start and target. collision_at, time: in steps."""
     import pandas as pd
 
     from bezierplan.running.simulation.motion_check import cut_motion
     from bezierplan.running.simulation.ways import build_polyline
     from bezierplan.workspaces.worlds import MovingCircles
 
-    time = at * ride.motion.times[-1]
     if isinstance(world, MovingCircles):
         step = int(time)
         now, after = world.at(step), world.at(step + 1)
         velocity = after - now
-        circles = pd.DataFrame(now + (time - step) * velocity, columns=["x", "y"])
-        circles = circles.assign(part="circle", size=world.radii, obstacle=range(len(now)))
+        circles = workspaces.list_points({"circle": now + (time - step) * velocity})
+        circles = circles.assign(size=world.radii, obstacle=range(len(now)))
         circles[["x_velocity", "y_velocity"]] = velocity
         bounds = world.bounds
-        corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
-        parts = [corners, circles]
+        parts = [workspaces.list_corners(bounds), circles]
     else:
         grid = world.workspace(time)
         parts, bounds = [workspaces.list_workspace_rows(grid)], grid.bounds
     driven = cut_motion(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
-    places = [("way", driven), ("robot", driven[-1:])]
+    parts.append(workspaces.list_points({"way": driven, "robot": driven[-1:]}))
     plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
     for number, plan in enumerate(plans):
+        part = "plan" if plan is plans[-1] else "dropped"
         line = build_polyline(plan.path, _FINE * (bounds[1] - bounds[0]))
-        places.append(("plan" if number == len(plans) - 1 else "dropped", line))
-    if verdict.collision_at <= time:
-        hit = cut_motion(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
-        places.append(("collision", hit))
-    for number, (part, points) in enumerate(places):
-        # Way and robot stand before the plans, which are numbered from 0.
-        own = workspaces.list_points({part: points})
-        parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
-    return pd.concat([*parts, workspaces.list_ends(problem)], ignore_index=True)
+        parts.append(workspaces.list_points({part: line}).assign(number=number))
+    if collision_at <= time:
+        hit = cut_motion(ride.motion, 0.0, max(collision_at, 1e-9)).points[-1:]
+        parts.append(workspaces.list_points({"collision": hit}))
+    return pd.concat(parts, ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

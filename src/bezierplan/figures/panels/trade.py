@@ -24,8 +24,6 @@ from bezierplan.running.columns import Row
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     import pandas as pd
     from matplotlib.axes import Axes
 
@@ -101,13 +99,16 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             for name, few in of_method.groupby("problem")
         }
         medians = np.array([[place["x"], place["y"]] for place in places.values()])
-        row = {"part": "method", "method": method, "problems": len(places)} | count_runs(of_method)
-        row |= {
+        first, *others = places.values()
+        row = {
+            "part": "method",
+            "method": method,
+            "problems": len(places),
+            **count_runs(of_method),
             "free": of_method["feasible"].mean(),
             "cornered": int(np.isposinf(of_method["x"]).sum()),
+            **(_compute_medians(medians, f"{options.x}/{method}") if others else first),
         }
-        first, *others = places.values()
-        row |= _compute_medians(medians, f"{options.x}/{method}") if others else first
         if of_bend and of_method["planner"].iloc[0] != _BASELINE:
             round_paths = np.isfinite(of_method["x"])
             often = round_paths.groupby(of_method["problem"]).mean().clip(upper=round_paths.mean())
@@ -294,22 +295,17 @@ def _describe_paths(row: pd.Series) -> str:
 
 def _write_note(table: pd.DataFrame, scene: Any) -> Note:
     """Say how to read the marks, and which methods add something."""
-    several = bool(table["problems"].max() > 1)
+    names = [naming.format_value(name, "method", scene.labels) for name in table["method"]]
+    table = table.assign(name=names)
+    several = table["problems"].max() > 1
     said = ["median and 95 % interval" + (" of the medians of the problems" if several else "")]
     said.append("beside a mark the share of paths that are free, where not all are")
-    if none := [*table["method"][table["free"] == 0]]:
-        said.append(f"no free path: {_list_methods(none, scene)}")
+    if none := ", ".join(table["name"][table["free"] == 0]):
+        said.append(f"no free path: {none}")
     if "adds" in table and table["adds"].notna().any():
-        adding = table[table["adds"] > 0]
-        fields = (f" in {row.adds:.0f} of {row.problems:.0f}" for row in adding.itertuples())
-        where = fields if several else itertools.repeat("")
-        said.append(f"adds something: {_list_methods(adding['method'], scene, where) or 'none'}")
+        told = (
+            row.name + (f" in {row.adds:.0f} of {row.problems:.0f}" if several else "")
+            for row in table[table["adds"] > 0].itertuples()
+        )
+        said.append(f"adds something: {', '.join(told) or 'none'}")
     return Note("", "; ".join(said))
-
-
-def _list_methods(
-    methods: Iterable[str], scene: Any, more: Iterable[str] = itertools.repeat("")
-) -> str:
-    """Return printed names of methods, each with more words behind it."""
-    printed = (naming.format_value(method, "method", scene.labels) for method in methods)
-    return ", ".join(name + beside for name, beside in zip(printed, more))

@@ -51,8 +51,14 @@ ENDS = {
     "target": style.build_mark_style("*", 12, style.BLACK, label="target", zorder=4.5),
 }
 
-Letters = Annotated[list[Line], Field(min_length=2, max_length=2)]
-LETTERS = "what is written next to start and target: a list of two"
+Letters = Annotated[
+    list[Line],
+    Field(
+        min_length=2,
+        max_length=2,
+        description="what is written next to start and target: a list of two",
+    ),
+]
 # How far a letter stands from a place, towards the panel's centre, in points.
 _LETTER_OFFSET = np.array([14, 4])
 
@@ -101,11 +107,9 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
     Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
     if isinstance(workspace, Grid):
-        whole = (
-            replace(workspace, occupied=embed_cells(workspace.occupied))
-            if options.embed
-            else workspace
-        )
+        whole = workspace
+        if options.embed:
+            whole = replace(whole, occupied=embed_cells(whole.occupied))
         return _build_table(whole.bounds, _list_cells(whole, workspace, options.numbers))
     if options.numbers != "none" or options.embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
@@ -114,19 +118,22 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
 
 def list_workspace_rows(workspace: Workspace) -> pd.DataFrame:
     """Return the rows of a workspace, as `data` does, but without numbers."""
-    shapes, drawn = workspace, []
-    if isinstance(workspace, Grid):
-        shapes = workspace.shapes
-        if not shapes or workspace.occupied.size <= _MOST_CELLS:
-            drawn.append(_list_cells(workspace, workspace, "none"))
-    if shapes:
-        drawn.append(_list_shapes(shapes))
-    return _build_table(workspace.bounds, *drawn)
+    if not isinstance(workspace, Grid):
+        return _build_table(workspace.bounds, _list_shapes(workspace))
+    shapes = [_list_shapes(workspace.shapes)] if workspace.shapes else []
+    if not shapes or workspace.occupied.size <= _MOST_CELLS:
+        shapes.insert(0, _list_cells(workspace, workspace, "none"))
+    return _build_table(workspace.bounds, *shapes)
 
 
 def list_ends(problem: Problem) -> pd.DataFrame:
     """Return start and target of a problem as `list_points` gives them."""
     return list_points({"start": [problem.start], "target": [problem.target]})
+
+
+def list_corners(bounds: Bounds) -> pd.DataFrame:
+    """Return the lowest and the highest corner of a workspace as `list_points` gives them."""
+    return list_points({"corner": np.reshape(bounds, (2, 2)).T})
 
 
 def list_points(points: Mapping[str, Any]) -> pd.DataFrame:
@@ -145,12 +152,11 @@ def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     import pandas as pd
 
     if isinstance(workspace, Circles):
-        x, y = workspace.centres.T
-        number = range(len(x))
-        circles = {"part": "circle", "x": x, "y": y, "size": workspace.radii, "obstacle": number}
-        return pd.DataFrame(circles)
+        number = range(len(workspace.radii))
+        circles = list_points({"circle": workspace.centres})
+        return circles.assign(size=workspace.radii, obstacle=number)
     rings = [
-        pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
+        list_points({"ring": points}).assign(obstacle=obstacle, ring=ring)
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
@@ -164,8 +170,7 @@ def _build_table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
     """
     import pandas as pd
 
-    corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
-    table = pd.concat([corners, *drawn], ignore_index=True)
+    table = pd.concat([list_corners(bounds), *drawn], ignore_index=True)
     return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
 
 
@@ -259,9 +264,7 @@ def draw_shapes(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> N
     from matplotlib.collections import PatchCollection
 
     corners = frame[frame["part"] == "corner"]
-    axes.set_xlim(corners["x"].min(), corners["x"].max())
-    axes.set_ylim(corners["y"].min(), corners["y"].max())
-    axes.set_aspect("equal")
+    axes.set(xlim=corners["x"], ylim=corners["y"], aspect="equal")
     cells = frame[frame["part"].isin(_CELLS)]
     for part, own in cells.groupby("part"):
         draw_cells(axes, own, _CELLS[part])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -39,7 +39,7 @@ _LOOK = {
 class Options(RunsPanel):
     """Keys of the panel."""
 
-    one: ClassVar[tuple[str, ...]] = ("problem",)
+    one = ("problem",)
 
     data: Function = Field(
         description="the name of a function of the study's module "

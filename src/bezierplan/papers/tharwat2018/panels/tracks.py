@@ -4,7 +4,7 @@ iterations.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
@@ -40,8 +40,8 @@ _FIRST = style.build_mark_style(
 class Options(RunsPanel):
     """Keys of the panel."""
 
-    rerun: ClassVar[bool] = True
-    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    rerun = True
+    one = ("problem", "method")
 
     by: Metric = Field(
         description="the name of a metric: of the feasible runs the best one of each of its "
