@@ -265,7 +265,11 @@ def made(key, claim, truth) -> dict[str, Results]:
 def verdict(key, claim, results, printed=None) -> pd.Series:
     own = study(key)
     functions = study_code.load_functions(own.code_for("functions"))
-    own_claims = [claim.but(variants={name: own[:1] for name, own in claim.variants.items()})]
+    own_claims = [
+        claim.but(
+            variants={name: own[:1] for name, own in claim.variants.items()}, variant_names=[]
+        )
+    ]
     repeats = dict.fromkeys(results, 10)
     of_study = for_claims(key)._replace(claims=own_claims, repeats=repeats, labels={})
     material = Material(of_study, results, printed or published(key), functions)

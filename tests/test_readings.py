@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from studies import studies
 
-from bezierplan.analysis.claims import by_reading
+from bezierplan.analysis.claims import by_reading, sentences
 from bezierplan.places import TREE
 from bezierplan.study import alternatives, jobs
 
@@ -151,6 +151,13 @@ def under(**verdicts):
             "no effect under slow",
             'supported by default, no effect under "slow" (How fast: 2). Why',
         ),
+        (
+            {"slow": "contradicted", "far": "contradicted"},
+            "depends",
+            "contradicted under slow, far",
+            'supported by default, contradicted under "slow" (How fast: 2) and "far" (How far: 3). '
+            "Why",
+        ),
     ],
 )
 def test_a_claim_depends_on_a_reading_that_decides_the_opposite(
@@ -170,6 +177,15 @@ def test_a_claim_depends_on_a_variant_with_any_other_verdict():
     assert [*found["verdict"]] == ["depends", "partly", "supported", "undecided"]
     assert found["reason"][0] == 'supported by default, partly with "metric length". Why'
     assert {*found["readings"]} == {""}
+
+
+def test_variants_have_their_names_or_are_described_by_their_values():
+    study = STUDIES["ma2020"]
+    names = sentences.name_variants(study.claims, study.labels)
+    assert names["method=aco ga aco_ga asfa_ga"] == "usual rivals"
+    assert (
+        names["method=differential_evolution_half"] == study.labels["differential_evolution_half"]
+    )
 
 
 def test_a_claim_of_two_checks_has_the_verdict_on_each(tmp_path):

@@ -144,6 +144,7 @@ def keep_claims(study: Study, claims: list[Claim]) -> Study:
     claims = [
         claim.but(
             variants={column: values[:1] for column, values in claim.variants.items()},
+            variant_names=[],
             checks=[check for check in claim.checks if check.primary],
         )
         for claim in claims

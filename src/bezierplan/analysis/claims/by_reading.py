@@ -74,11 +74,10 @@ def add_dependence(
         ]
         # A reading that only turns supported into partly is on the same side.
         side = SIDES[claim["verdict"]]
-        words += [
-            f'{verdict} under "{name}" ({meanings[name]})'
-            for name, verdict in own.items()
-            if SIDES.get(verdict, side) != side
-        ]
+        turned = {name: each for name, each in own.items() if SIDES.get(each, side) != side}
+        for verdict in dict.fromkeys(turned.values()):
+            told = [f'"{name}" ({meanings[name]})' for name in turned if turned[name] == verdict]
+            words.append(f"{verdict} under {' and '.join(told)}")
         if words:
             told_first = f"{claim['verdict']} by default, {', '.join(words)}"
             claims.loc[index, "verdict"] = "depends"

@@ -71,6 +71,11 @@ class Claim(Model):
         "rows of their own, with each of the others; null is no condition",
         min_length=1,
     )
+    variant_names: list[Line] = Field(
+        [],
+        description="names of the variants, one for each combination of their values, the last "
+        "column varying fastest; left out: the values themselves",
+    )
     checks: list[Annotated[ClaimCheck, build_choice_type("test", list_kinds())]] = Field(
         description="a list of checks, at least one of them primary",
         min_length=1,
@@ -84,8 +89,11 @@ class Claim(Model):
         """
         if not any(check.primary for check in self.checks):
             raise build_error("checks: every check has secondary: true; expected one that decides")
-        if math.prod(map(len, self.variants.values())) > MOST_VARIANTS:
+        combinations = math.prod(map(len, self.variants.values()))
+        if combinations > MOST_VARIANTS:
             raise build_error(f"variants: expected at most {MOST_VARIANTS} combinations of values")
+        if len(self.variant_names) not in (0, combinations):
+            raise build_error(f"variant_names: expected {combinations}, one for each combination")
         for column, values in self.variants.items():
             if len({len(convert_to_list(each)) for each in values}) > 1:
                 raise build_error(

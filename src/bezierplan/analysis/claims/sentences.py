@@ -68,11 +68,12 @@ def name_comparison(row: Row, check: ClaimCheck | None, labels: Labels) -> str:
 
 def name_variants(claims: Sequence[Claim], labels: Labels) -> dict[str, str]:
     """Name the variants of claims as printed, by their names in claims.csv."""
-    return {
-        variants.name_variant(values): describe_place(values, labels)
-        for claim in claims
-        for values in variants.list_variants(claim)
-    }
+    named = {}
+    for claim in claims:
+        listed = variants.list_variants(claim)
+        words = claim.variant_names or [describe_place(values, labels) for values in listed]
+        named |= zip(map(variants.name_variant, listed), words)
+    return named
 
 
 def describe_place(values: Mapping[str, Any], labels: Labels) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-FEW = 100
+FEW = 40
 """Runs of each method under each condition, at most."""
 
 # Height of a row and of the gap between two assumptions, and width of the axes, in inches.
