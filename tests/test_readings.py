@@ -183,9 +183,8 @@ def test_variants_have_their_names_or_are_described_by_their_values():
     study = STUDIES["ma2020"]
     names = sentences.name_variants(study.claims, study.labels)
     assert names["method=aco ga aco_ga asfa_ga"] == "usual rivals"
-    assert (
-        names["method=differential_evolution_half"] == study.labels["differential_evolution_half"]
-    )
+    half = "differential_evolution_half"
+    assert names[f"method={half}"] == study.labels[half]
 
 
 def test_a_claim_of_two_checks_has_the_verdict_on_each(tmp_path):
