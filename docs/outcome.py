@@ -14,7 +14,6 @@ from pathlib import Path
 import facts
 import numbers_picture
 import pandas as pd
-from markdown_table import write_table
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.numbers import comparison, methods
@@ -153,7 +152,7 @@ def build_paper_page(
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
-        _write_table(main.rename(columns=heads).set_index("claim")),
+        write_table(main.rename(columns=heads).set_index("claim")),
         MORE.format(folder.name),
         LAID,
     ]
@@ -161,7 +160,7 @@ def build_paper_page(
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         numbers = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         laid = _place_beside(ours, numbers.dropna(subset="table_row"), heads)
-        parts += [f"## {naming.format_heading(name)}: {table_title}", _write_table(laid)]
+        parts += [f"## {naming.format_heading(name)}: {table_title}", write_table(laid)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -202,7 +201,7 @@ def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
         )
         names = {"item": "in", "printed": "printed", "limit": "ours", "arithmetic": "paths"}
         shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
-        parts += [f"## {format_name(key)}", _write_table(shown.astype(str).set_index("in"))]
+        parts += [f"## {format_name(key)}", write_table(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
 
 
@@ -271,7 +270,7 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, Mapping[
         for name, label in own.items()
     }
     laid = methods.format_table(rows[rows["proposed"].astype(bool)], named)
-    return f"{_write_table(laid)}\n\n*{GENTLY}*"
+    return f"{write_table(laid)}\n\n*{GENTLY}*"
 
 
 def format_name(key: str) -> str:
@@ -283,9 +282,15 @@ def format_name(key: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
 
 
-def _write_table(table: pd.DataFrame) -> str:
+def write_table(table: pd.DataFrame) -> str:
     """Write a table as markdown, its index first."""
-    return write_table([table.index.name or "", *table.columns], table.itertuples())
+    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
+    rows += [
+        [name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)
+    ]
+    return "\n".join(
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    )
 
 
 def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
