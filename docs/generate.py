@@ -21,7 +21,6 @@ import outcome
 import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
-from markdown_table import write_table
 
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
@@ -114,9 +113,9 @@ def write(folder: Path) -> None:
 
 def format_table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
     """Return a table in Markdown from its heads and rows."""
-    return (
-        write_table(heads, ([" ".join(str(cell).split()) for cell in row] for row in rows)) + "\n"
-    )
+    lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
+    lines += ["| " + " | ".join(escape_cell(cell) for cell in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
 
 
 def escape_cell(value: Any) -> str:

@@ -16,7 +16,6 @@ from typing import Any
 import facts
 import numbers_picture
 import pandas as pd
-from markdown_table import write_table
 
 from bezierplan.analysis import naming
 from bezierplan.analysis.numbers import comparison, methods
@@ -172,7 +171,7 @@ def build_paper_page(
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
-        _write_table(main.rename(columns=heads).set_index("claim")),
+        write_table(main.rename(columns=heads).set_index("claim")),
         "## Its methods beside the exact shortest path with rounded corners",
         measured,
         "## Its tables",
@@ -191,7 +190,7 @@ def build_paper_page(
             f"### {naming.format_heading(name)}: {table_title}",
             *told,
             *([LISTED] if is_listed else []),
-            _write_table(_place_beside(ours, laid, heads)),
+            write_table(_place_beside(ours, laid, heads)),
         ]
     return "\n\n".join(parts) + "\n"
 
@@ -260,7 +259,7 @@ def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
         )
         names = {"item": "in", "place": "number", "limit": "calculated", "arithmetic": "paths"}
         shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
-        parts += [f"## {format_name(key)}", _write_table(shown.astype(str).set_index("in"))]
+        parts += [f"## {format_name(key)}", write_table(shown.astype(str).set_index("in"))]
     return "\n\n".join(parts) + "\n"
 
 
@@ -352,7 +351,7 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.L
     groups = rows.groupby(["study", "family"], sort=False)
     laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
     own = f" {ALONE}" if "rounded" in set(rows["method"]) else ""
-    return f"{_write_table(laid)}\n\n*{GENTLY}{own}*"
+    return f"{write_table(laid)}\n\n*{GENTLY}{own}*"
 
 
 def format_name(key: str) -> str:
@@ -364,9 +363,15 @@ def format_name(key: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
 
 
-def _write_table(table: pd.DataFrame) -> str:
+def write_table(table: pd.DataFrame) -> str:
     """Write a table as markdown, its index first."""
-    return write_table([table.index.name or "", *table.columns], table.itertuples())
+    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
+    rows += [
+        [name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)
+    ]
+    return "\n".join(
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    )
 
 
 def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:

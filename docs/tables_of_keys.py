@@ -5,7 +5,6 @@ ensures that they are up to date.
 
 import re
 
-from markdown_table import write_table
 from pydantic.fields import FieldInfo
 
 from bezierplan.analysis import columns as result_columns
@@ -72,8 +71,11 @@ def describe_keys(name: str) -> str:
 
 def _format_table(model: type[Model]) -> str:
     """Return a table with a row for each key of a model."""
-    rows = [(_format_name(*each), each[1].description) for each in list_keys(model).items()]
-    return write_table(["key", "means"], rows)
+    rows = [
+        f"| {_format_name(name, field)} | {field.description} |"
+        for name, field in list_keys(model).items()
+    ]
+    return "\n".join(["| key | means |", "| --- | --- |", *rows])
 
 
 def _format_by_kind(models: dict[str, type[Model]]) -> str:
@@ -91,12 +93,15 @@ def _format_by_kind(models: dict[str, type[Model]]) -> str:
     shared = sorted(
         rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0
     )
-    return write_table(
-        ["kind", "key", "means"],
-        (
-            (", ".join(kinds) if len(kinds) < len(models) else "all", *key_and_text)
-            for key_and_text, kinds in shared
-        ),
+    return "\n".join(
+        [
+            "| kind | key | means |",
+            "| --- | --- | --- |",
+            *(
+                f"| {', '.join(kinds) if len(kinds) < len(models) else 'all'} | {name} | {text} |"
+                for (name, text), kinds in shared
+            ),
+        ]
     )
 
 
@@ -141,17 +146,20 @@ def _join_meaning(about: columns.Column) -> str:
 
 def describe_columns_of_results(parts: tuple[type, ...]) -> str:
     """Return the table of columns of a table of results, as Markdown."""
-    rows = [
-        (f"`{name}`", _PRINTED[kind], about.meaning)
+    lines = [
+        f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
         for name, (kind, about) in columns.read_columns(*parts).items()
     ]
-    return write_table(["column", "values", "meaning"], rows)
+    return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
 
 
 def _format_columns(rows: list[tuple[str, type, str, str]]) -> str:
     """Return a table with name, type, unit and meaning of each column."""
-    lines = [(f"`{name}`", _PRINTED[kind], *others) for name, kind, *others in rows]
-    return write_table(["column", "values", "unit", "meaning"], lines)
+    lines = [
+        f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |"
+        for name, kind, unit, meaning in rows
+    ]
+    return "\n".join(["| column | values | unit | meaning |", "| --- | --- | --- | --- |", *lines])
 
 
 def update_keys(text: str) -> str:

@@ -30,9 +30,6 @@ with Path(__file__).with_suffix(".csv").open(encoding="utf-8", newline="") as ro
     WORDS = {row.pop("word"): Word(**row) for row in csv.DictReader(rows)}
 """In the order in which they are counted and explained."""
 
-OTHER = Word("", "open", "", "", "open", "·", "", "")
-"""How any other text is shown."""
-
 
 def select_words(what: str) -> dict[str, Word]:
     """Select the positions of numbers, or the verdicts on claims. what: `number` or `claim`."""

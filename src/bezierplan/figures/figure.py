@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
+from pydantic import Field, PlainValidator, TypeAdapter
 
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, list_kinds
 from bezierplan.schema.model import (
@@ -16,9 +16,6 @@ from bezierplan.schema.model import (
 )
 
 _PANELS = TypeAdapter(dict[str, Annotated[Panel, build_choice_type("kind", list_kinds())]])
-_PARTS = TypeAdapter(
-    Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
-)
 
 
 def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
@@ -41,10 +38,10 @@ def _expand_entry(place: int, entry: Any) -> dict[str, Any]:
     if not isinstance(entry, dict) or "each" not in entry:
         return {f"{place}": entry}
     shared = {key: value for key, value in entry.items() if key != "each"}
-    try:
-        parts = _PARTS.validate_python(entry["each"])
-    except ValidationError:
-        raise build_error(f"each: {show_value(entry['each'])}: expected {EACH}") from None
+    parts = entry["each"]
+    several = isinstance(parts, list) and len(parts) > 1
+    if not several or not all(isinstance(part, dict) for part in parts):
+        raise build_error(f"each: {show_value(parts)}: expected {EACH}")
     return {f"{place}: each: {n}": _merge_keys(part, shared) for n, part in enumerate(parts)}
 
 
