@@ -100,6 +100,7 @@ def job() -> PageJob:
                 checks=[checks_of_claims.check_of(LOWER)],
                 holds="any",
                 variants={"metric": ["length", "objective"]},
+                variant_names=[],
             )
             for name in claims
         },
