@@ -167,24 +167,24 @@ def on_map(unit: str, meaning: str, *kinds: str, **facts: Any) -> Callable[[F], 
 
 
 def measure_on_maps(
-    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: Problems
+    measure: Callable[[Path, Any], float], runs: pd.DataFrame, problems: Problems
 ) -> list[float]:
     """Measure each run's path in its workspace; NaN where the run has none. Equal measures of equal
     paths are taken once.
+
+    problems: none for a measure of paths alone.
     """
-    given = zip(runs["path_curve"], runs["path_points"], runs["problem"])
+    workspaces = [problems[name].workspace if problems else None for name in runs["problem"]]
     return [
         # Bytes, because an array cannot be a key of the cache.
-        _measure(
-            measure, curve, np.asarray(points, dtype=float).tobytes(), problems[problem].workspace
-        )
-        for curve, points, problem in given
+        _measure(measure, curve, np.asarray(points, dtype=float).tobytes(), workspace)
+        for curve, points, workspace in zip(runs["path_curve"], runs["path_points"], workspaces)
     ]
 
 
 @lru_cache(MEASURES_KEPT)
 def _measure(
-    measure: Callable[[Path, Workspace], float], curve: str, points: bytes, workspace: Workspace
+    measure: Callable[[Path, Any], float], curve: str, points: bytes, workspace: Workspace | None
 ) -> float:
     """Measure a path, given by its curve kind and the bytes of its points, by which results are
     remembered.
