@@ -153,7 +153,9 @@ def read_page(key: str) -> str:
     """
     text = (OUTCOME / f"{key}.md").read_text(encoding="utf-8").partition("\n")[2]
     text = re.sub(r"\]\((?:claims|numbers)\.csv\)", "](../results/index.html#KEY){.external}", text)
-    return re.sub(r"\[([^]]*)\]\(\.\./\.\./config[^)]*\)", r"\1", text).replace("#KEY", f"#{key}")
+    # Files that the site has not are named without a link.
+    text = re.sub(r"\[([^]]*)\]\((?:\.\./\.\./config|identified)[^)]*\)", r"\1", text)
+    return text.replace("#KEY", f"#{key}")
 
 
 def read_origin_of_maps(study: SimpleNamespace) -> str:

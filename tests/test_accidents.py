@@ -102,13 +102,14 @@ print(one, other)
 
 
 def test_damaged_compiled_code_is_compiled_again(tmp_path):
-    first = starts.python(SWAPS, tmp_path, HOME=str(tmp_path))
+    home = {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / ".cache")}
+    first = starts.python(SWAPS, tmp_path, **home)
     for which, content in (("*.nbi", b"garbage" * 100), ("*.nbc", b"")):
         files = list((tmp_path / ".cache").rglob(which))
         assert files
         for file in files:
             file.write_bytes(content)
-        assert starts.python(SWAPS, tmp_path, HOME=str(tmp_path)) == first
+        assert starts.python(SWAPS, tmp_path, **home) == first
         assert all(file.read_bytes() != content for file in files), which
 
 
