@@ -6,7 +6,6 @@ samples. Next to each verdict stands the verdict at the paper's own number of ru
 `make outcome` writes it; the site reads it.
 """
 
-import math
 import re
 import shutil
 from collections.abc import Iterable, Mapping
@@ -346,8 +345,6 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.L
         for study, own in labels.items()
         for name, label in own.items()
     }
-    # The rounded shortest path is not compared with itself.
-    rows.loc[rows["method"] == "rounded", ["rounded", "both"]] = math.nan, 0
     groups = rows.groupby(["study", "family"], sort=False)
     laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
     own = f" {ALONE}" if "rounded" in set(rows["method"]) else ""

@@ -43,7 +43,7 @@ def test_an_arc_shorter_than_a_step_of_samples_counts():
 def run(problem, method, path, length, feasible=True):
     own = {"problem": problem.name, "condition": problem.name, "method": method, "length": length}
     own |= {"bound": bp.plan(problem, "shortest_path").length, "feasible": feasible}
-    own |= {"id": f"{method}/{problem.name}", "cpu_s": 0.002, "evaluations": 7}
+    own |= {"id": f"{method}/{problem.name}", "cpu_s": 0.002, "evaluations": 7, "planner": method}
     return own | {"path_curve": path[0], "path_points": np.array(path[1])}
 
 

@@ -17,7 +17,9 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 BASELINE = "the exact shortest path with rounded corners"
-"""The planner that every method is compared with, in words."""
+"""The planner that every method but itself is compared with, in words."""
+
+_PLANNER = "rounded_shortest_path"
 
 # The turns of at most so many paths are measured: more would take longer than to find the paths,
 # and move no median.
@@ -25,7 +27,7 @@ _MEASURED = 100
 
 # What is read of runs: slices of frames of all columns take most of the time.
 _COLUMNS = ["problem", "method", "bound", "free", "gap", "corners", "cpu_s", "evaluations"]
-_COLUMNS += ["path_curve", "path_points"]
+_COLUMNS += ["planner", "path_curve", "path_points"]
 
 # A shortest path that is longer than the straight line by less, as a share, is that line.
 _STRAIGHT = 1e-9
@@ -70,7 +72,11 @@ def _measure_methods(
                 "excess_high": high,
                 "round": len(smooth),
                 "cornered": len(free) - len(smooth),
-                **(_measure_turns(smooth, problem, bound) if family else {}),
+                **(
+                    _measure_turns(smooth, problem, bound)
+                    if family and of_method["planner"].iloc[0] != _PLANNER
+                    else {}
+                ),
                 "cpu_ms": 1000 * of_method["cpu_s"].median(),
                 "evaluations": of_method["evaluations"].median(),
             }
