@@ -4,12 +4,14 @@ start and target inside their cells.
 Cells are numbered as in `grid.Grid`; lengths are in cells.
 """
 
+import heapq
 import math
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.kernels import compile_kernel
 from bezierplan.workspaces.grid import Grid
 
 Corners = IntEnum("Corners", {"free": 2, "one": 1, "none": 0})
@@ -117,16 +119,32 @@ def compute_distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray
     """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
     neighbours, infinite where there is no path.
     """
-    from scipy.sparse import csgraph, csr_array
+    walls = np.pad(occupied, 1, constant_values=True)
+    return _compute_distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
 
-    free = occupied.copy()
-    free[row, column] = False  # a path from an occupied cell leads out of it
-    reached = list_neighbours(free, "free")
-    cells, steps = np.nonzero(reached >= 0)
-    lengths = np.hypot(*STEPS[steps].T)
-    graph = csr_array((lengths, (cells, reached[cells, steps])), (occupied.size, occupied.size))
-    begin = row * occupied.shape[1] + column
-    return csgraph.dijkstra(graph, indices=begin).reshape(occupied.shape)
+
+@compile_kernel
+def _compute_distances(walls, row, column, steps):
+    """Compute the distance of each cell from one by Dijkstra's algorithm; `walls` frames the grid
+    with occupied cells.
+
+    scipy takes six times as long, for its graph: as long as half of a run on 200 x 200 cells.
+    """
+    far = np.full(walls.shape, np.inf)
+    far[row, column] = 0.0
+    heap = [(0.0, row, column)]
+    while len(heap) > 0:
+        length, row, column = heapq.heappop(heap)
+        # An outdated entry: a shorter way to the cell was found after it.
+        if length > far[row, column]:
+            continue
+        for k in range(len(steps)):
+            up, right = row + steps[k, 0], column + steps[k, 1]
+            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
+            if not walls[up, right] and ahead < far[up, right]:
+                far[up, right] = ahead
+                heapq.heappush(heap, (ahead, up, right))
+    return far
 
 
 def list_points(
