@@ -39,7 +39,9 @@ GENTLY = (
     "paths without corners; a dash means that there are none. The method beats it in a problem if "
     "its median path is shorter, or turns more gently than any rounded shortest path."
 )
-ALONE = "Its own row is of the turning radius that it takes if none is asked."
+ALONE = (
+    "The row of the rounded shortest path has the turning radius that it takes if none is asked."
+)
 OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
     "that the paper is wrong."
@@ -52,7 +54,7 @@ LAID = (
     f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
     "so it does not count. Times are of another machine: not compared."
 )
-MARKS = ("\\*", "†", "‡")
+MARKS = ("\\*", "†", "‡", "§")
 """Beside printed numbers that prove nothing of the paper, one for each reason."""
 
 IDENTIFIED = (
@@ -195,14 +197,16 @@ def build_paper_page(
 
 
 def mark_worthless(numbers: pd.DataFrame) -> tuple[list[str], list[str]]:
-    """Mark the numbers of a table that prove nothing of the paper, and say why. If all have the
-    same reason, the text alone says so.
+    """Return sentences on why numbers of a table prove nothing of the paper, and the mark of each
+    number (n,), empty if it has none.
+
+    If all have the same reason, the sentence alone says so. numbers: n rows with their reason.
 
     >>> mark_worthless(pd.DataFrame({"reason": ["the map is ours", None]}))
     (['\\\\* proves nothing of the paper: the map is ours.'], ['\\\\*', ''])
     """
     reasons = dict(zip(numbers["reason"].dropna().unique(), MARKS))
-    if len(numbers["reason"].unique()) == 1 == len(reasons):
+    if reasons and numbers["reason"].nunique(dropna=False) == 1:
         (reason,) = reasons
         return [f"These numbers prove nothing of the paper: {reason}."], [""] * len(numbers)
     told = [f"{mark} proves nothing of the paper: {reason}." for reason, mark in reasons.items()]
@@ -224,8 +228,8 @@ def describe_where_or_why(claim: Mapping[str, Any]) -> str:
         return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
     places = claim["where_it_holds"]
     if not isinstance(places, str):
-        everywhere = "everywhere" if claim["verdict"] == "supported" else "nowhere"
-        places = f"{everywhere}: {claim['holds']}"
+        words = {"supported": "everywhere: ", "contradicted": "nowhere: ", "no effect": "nowhere: "}
+        places = f"{words.get(claim['verdict'], '')}{claim['holds']}"
     ours = re.search(r"Ours: (.*?)\.(?: |$)", reason)
     return f"{places}; our criterion: {ours[1]}" if ours else places
 

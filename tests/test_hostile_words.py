@@ -54,3 +54,5 @@ def test_without_a_word_about_cores_the_workflow_starts(monkeypatch):
     assert started == [run.build_command(["mystudy"])]
     with pytest.raises(Fault, match=r"^no/where: expected the folder of a study"):
         run.build_command(["results/full/page.html", "--cores", "2", "-n", "a/b", "no/where"])
+    with pytest.raises(Fault, match=r"^--scale: expected a target in its place: smoke, all"):
+        run.build_command(["mystudy", "--scale=smoke"])

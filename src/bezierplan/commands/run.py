@@ -40,8 +40,6 @@ def main(*words: str) -> None:
     """
     if not words:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
-    if any(word.startswith("--scale") for word in words):
-        raise Fault("--scale: expected a target in its place: smoke, all (scale full) or extended")
     importlib.import_module("snakemake")  # or else it is told what to install
     out, err = map(forks.choose_stream, (sys.stdout, sys.stderr))
     workflow = subprocess.Popen(
@@ -61,6 +59,8 @@ def main(*words: str) -> None:
 
 def build_command(words: Sequence[str]) -> list[str]:
     """Return the command line of Snakemake for the words of this command."""
+    if any(word.startswith("--scale") for word in words):
+        raise Fault("--scale: expected a target in its place: smoke, all (scale full) or extended")
     snakemake = [sys.executable, "-m", "snakemake"]
     if not any(word.startswith("--workflow-profile") for word in words):
         # Snakemake would print a line about a profile each time.
