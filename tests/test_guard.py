@@ -172,3 +172,10 @@ def test_a_signal_ends_a_command_and_its_planner(number, tmp_path):
     interrupted = number == signal.SIGINT
     assert command.returncode == (128 + number if interrupted else -number)
     assert told == ("python -m bezierplan: interrupted\n" if interrupted else "")
+
+
+def test_a_file_that_can_be_imported_only_once_is_told_with_its_place(tmp_path):
+    file = tmp_path / "once.py"
+    file.write_text(f"open({str(tmp_path / 'mark')!r}, 'x')\ndef plan(problem, rng): ...\n")
+    with pytest.raises(checked.Fault, match=r"^place: .*FileExistsError: [^\n]+$"):
+        interface.load_planner_module(str(file), "place")

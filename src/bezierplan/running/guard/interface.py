@@ -34,7 +34,10 @@ def load_planner_module(planner: str, location: str) -> ModuleType:
             _read_traits_of_file(planner)
         except PlannerFailure as failure:
             raise Fault(f"{location}: {failure}") from None
-    return load_planner(planner)
+    try:
+        return load_planner(planner)
+    except Exception as error:  # a user's file can fail the second time alone
+        raise Fault(f"{location}: {describe_in_one_line(error)}") from None
 
 
 class Traits(NamedTuple):
