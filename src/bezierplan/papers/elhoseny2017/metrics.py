@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,9 +23,12 @@ from bezierplan.analysis.metric import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pandas as pd
 
     from bezierplan.analysis.metric import Problems
+    from bezierplan.workspaces.grid import Grid
     from bezierplan.workspaces.problem import Path
 
 # Approximate length, in units, of the parts by which a path's bending is measured, and samples of a
@@ -88,6 +91,18 @@ def straight_blocked(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     return np.isnan(measure_on_maps(cells, straight, problems))
 
 
+@cache
+def _choose_count(name: str) -> Callable[[Path, Grid], float]:
+    """Choose a length of `cell_length` by its name, as a measure of free cells alone.
+
+    It is one function for each name, because results are remembered by the function.
+    """
+    from bezierplan.geometry import cell_length
+
+    count = getattr(cell_length, name)
+    return lambda path, grid: np.nan if np.isnan(cells(path, grid)) else count(path, grid)
+
+
 def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[float]:
     """Measure a length counted in cells (`cell_length`).
 
@@ -96,14 +111,7 @@ def measure_in_cells(name: str, runs: pd.DataFrame, problems: Problems) -> list[
 
     Raises ValueError, naming the run, if a length lies below its problem's bound.
     """
-    from bezierplan.geometry import cell_length
-
-    count = getattr(cell_length, name)
-    lengths = measure_on_maps(
-        lambda path, grid: np.nan if np.isnan(cells(path, grid)) else count(path, grid),
-        runs,
-        problems,
-    )
+    lengths = measure_on_maps(_choose_count(name), runs, problems)
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         # Sums of steps and of diagonals differ by rounding only.
         if length < bound * (1 - 1e-12):
