@@ -21,7 +21,6 @@ from bezierplan.figures.panels import (
     along_path,
     bars,
     boxes,
-    clearance,
     convergence,
     lines,
     paths,
@@ -91,7 +90,7 @@ def scene(found: Results) -> sheet.FigureScene:
 
 
 RUN = {"experiment": "routes", "where": {"problem": "0_15", "method": "smooth"}, "pick": LOWEST}
-CURVATURE = {"kind": "along_path", **RUN, "quantity": "curvature", "limit": 0.1}
+CURVATURE = {"kind": "along_path", **RUN, "limit": 0.1}
 METHODS = {"experiment": "routes", "where": {"method": ["smooth", "coarse", "random"]}}
 CLOSE = {"control": "points", "view": [-9, 9, -4, 5], "pick": {"median": "length"}}
 OF_THREE = {"experiment": "routes", "where": {"method": "smooth", "points": 3}}
@@ -731,26 +730,11 @@ def test_a_box_has_its_parts_where_they_lie():
 def test_a_quantity_along_a_path_stands_over_the_parameter():
     values = {"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "pieces": 2}
     frame = pd.DataFrame(values).assign(problem="across", run="r", feasible=True, **COUNTS)
-    axes = axes_of(along_path, frame, pick={"repeat": 3}, quantity="curvature", context=True)
+    axes = axes_of(along_path, frame, pick={"repeat": 3}, context=True)
     assert labelled(axes, "path") == [[0, 0.5, 1], [0.25, 0.75, 0.5]]
     assert labelled(axes, "largest magnitude") == [[0.5], [0.75]]
     assert labelled(axes, "joint of two pieces")[0] == [0.5, 0.5]
     assert labelled(axes, "published limit: 0.6 1/m")[1] == pytest.approx([0.6, 0.6])
-
-
-def test_the_end_of_a_drive_says_whether_it_arrived():
-    drives = {"mine": [3.0, 2.0, 1.0], "other": [3.0, -1.0]}
-    rows = [
-        (method, f"study/moving/field/{method}/0", step, distance, method == "mine")
-        for method, distances in drives.items()
-        for step, distance in enumerate(distances, 1)
-    ]
-    frame = pd.DataFrame(rows, columns=["method", "run", "step", "clearance", "arrived"])
-    axes = axes_of(clearance, frame)
-    ends = [line for line in axes.lines if line.get_marker() != "" and len(line.get_xdata()) == 1]
-    assert [(*line.get_xydata()[0],) for line in ends] == [(3, 1), (2, -1)]
-    assert [line.get_markerfacecolor() == style.FREE for line in ends] == [False, True]
-    assert "hollow: ends without arrival" in axes.get_legend_handles_labels()[1]
 
 
 # Print

@@ -71,7 +71,7 @@ def found() -> results.Results:
     )
 
 
-BY = {"by": "homotopy", "runs": 2}
+BY = {"by": "homotopy"}
 
 
 def test_ways_are_those_of_the_runs(found):
@@ -79,13 +79,13 @@ def test_ways_are_those_of_the_runs(found):
     itself can do that.
     """
     ways = [
-        tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=point)).query(
-            "part == 'way'"
-        )
+        tracks.data(found, options_of(tracks, **BY, point=point)).query("part == 'way'")
         for point in range(5)
     ]
+    first = ways[0]["run"].iloc[0]
+    ways = [way[way["run"] == first] for way in ways]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
-    run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
+    run = found.runs.set_index("id").loc[first]
     again = chaotic_pso._build_objective(FIELD, fill_settings(chaotic_pso.Settings, CHUNK.settings))
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
@@ -105,8 +105,7 @@ def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
     frame = tracks.data(found, options_of(tracks, **BY, point=1))
     assert set(frame["run"].dropna()) == best
     assert set(frame["groups"]) == {2}
-    first = tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=1))
-    commonest = first["run"].dropna().iloc[0]
+    commonest = frame["run"].dropna().iloc[0]
     assert runs.set_index("id")["group"][commonest] == counts.index[0] or counts.nunique() == 1
 
 

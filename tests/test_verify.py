@@ -325,9 +325,7 @@ MET = {
     "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
     "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
 }
-POLICY = Policy(
-    replan="when_changed", waits=False, brake=1.0, horizon=2.0, spacing=0.1, step_seconds=1.0
-)
+POLICY = Policy(replan="when_changed", waits=False, brake=1.0, horizon=2.0, spacing=0.1)
 DRIVES = CHUNK._replace(
     experiment="d",
     planner="shortest_path",

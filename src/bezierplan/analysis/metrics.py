@@ -131,7 +131,6 @@ AT_LEAST_0 = (
     "replan_mean_s",
     "replan_95_s",
     "replan_max_s",
-    "replans_late",
 )
 
 METRICS |= {

@@ -287,7 +287,7 @@ def run_chunk(
             continue
         times = Times(outcome["id"], reply.cpu, reply.wall)._asdict()
         if moving:
-            times |= drives.replan_times(reply.result, chunk.policy["step_seconds"])._asdict()
+            times |= drives.replan_times(reply.result)._asdict()
         done[k, repeat] = outcome, times, trace
     if failures:
         raise PlannerFailure("\n".join(failures))

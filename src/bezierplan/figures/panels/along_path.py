@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -34,16 +34,14 @@ class Options(RunsPanel):
     one = ("problem", "method")
 
     pick: Picked
-    quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
     limit: Number = Field(math.nan, description="the published limit, a number")
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
     """Return one row per sample of a path, uniform in its parameter.
 
-    Columns of `paths.choose_run` come first, then quantity, limit, pieces (of the path), t (0 to
-    1), value. The value of curvature has its sign, with left turns positive, in 1/unit, and is
-    empty where the speed is zero. If there is no path, one row has neither t nor value.
+    Columns of `paths.choose_run` come first, then limit, pieces (of the path), t (0 to 1), value:
+    the curvature with its sign, left turns positive, in 1/unit; empty where the speed is zero. If there is no path, one row has neither t nor value.
 
     Raises ValueError unless all runs are of one problem and one method.
     """
@@ -52,7 +50,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.analysis.results import build_path
 
     run, names = choose_run(results, options.pick)
-    names |= {"quantity": options.quantity, "limit": options.limit}
+    names |= {"limit": options.limit}
     path = None if run is None else build_path(run)
     if path is None:
         return pd.DataFrame([names | {"pieces": 0, "t": math.nan, "value": math.nan}])

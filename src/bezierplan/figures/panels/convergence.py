@@ -7,7 +7,7 @@ A study's label of `generation` names the axis, such as `iteration` for a swarm.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -50,9 +50,6 @@ class Options(RunsPanel):
         None,
         description="instead of pick, a column of the runs table: a line for each of its values",
     )
-    statistic: Literal["mean", "median"] = Field(
-        "mean", description="with hue, of its runs: mean (left out: this) or median"
-    )
     until: Whole = Field(
         None,
         description="the generation at which the axis ends; "
@@ -73,9 +70,8 @@ class Options(RunsPanel):
     def _check_source(self) -> Options:
         """Refuse both or neither of pick and hue, and keys that need hue."""
         require_one(self, "pick", "hue")
-        for key in {"statistic", "printed"} & self.model_fields_set:
-            if self.hue is None:
-                raise build_error(f"{key}: needs hue")
+        if self.printed and self.hue is None:
+            raise build_error("printed: needs hue")
         return self
 
 
@@ -87,8 +83,8 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     With `pick`, columns of `paths.choose_run` come first, then generation, objective (of the chosen
     run; empty if there is none), median, quartile1 and quartile3, bound. With `hue`, columns of
-    `groups.collect_rows` come first, then generation, objective (the statistic), low95 and high95
-    (its 95 % bootstrap interval), bound (empty if problems differ in it). With `context`, a column
+    `groups.collect_rows` come first, then generation, objective (the mean), low95 and high95 (its
+    95 % bootstrap interval), bound (empty if problems differ in it). With `context`, a column
     reference: the length of the best known path of the methods' own kind, empty if problems differ
     in it. With `printed`, a column of that name: the mean that this published table has for a
     group, in the row of the last generation.
@@ -135,24 +131,24 @@ def _build_rows_of_run(results: Results, pick: Pick, generations: int) -> pd.Dat
 
 
 def _build_rows_of_group(group: Results, options: Options, generations: int) -> Iterable[Row]:
-    """Yield each generation of a group with the interval of its statistic.
+    """Yield each generation of a group with the interval of its mean.
 
     All generations use the same draws of runs, so that the ends of the interval are smooth lines.
     """
-    statistic, hue = options.statistic, options.hue
+    hue = options.hue
     histories = extend_histories(group.runs, generations)
     name = f"convergence/{hue}={group.runs[hue].iloc[0]}"
-    centres = statistics.STATISTICS[statistic](histories.T)
+    means = statistics.STATISTICS["mean"](histories.T)
     theirs = find_published(group, "objective", options.printed)
     ends = np.nan, np.nan
     for number, column in enumerate(histories.T):
         # Equal objectives have equal intervals: they are not resampled.
         if number == 0 or not np.array_equal(column, histories[:, number - 1]):
-            ends = statistics.compute_interval(statistic, column, generator(name))
+            ends = statistics.compute_interval("mean", column, generator(name))
         last = theirs and number == generations - 1
         yield {
             "generation": number,
-            "objective": centres[number],
+            "objective": means[number],
             "low95": ends[0],
             "high95": ends[1],
             "printed": theirs[0] if last else np.nan,
@@ -211,5 +207,5 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
         if len(groups) > _MOST_BANDS:
             wide = {"label": f"{style.INTERVAL['label']} at the end"}
         axes.plot([], [], **style.INTERVAL | wide)
-    show_metric(axes, "objective", scene, options.statistic)
-    return Note("", describe_runs(frame, options.statistic, "line"))
+    show_metric(axes, "objective", scene, "mean")
+    return Note("", describe_runs(frame, "mean", "line"))

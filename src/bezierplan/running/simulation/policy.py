@@ -97,8 +97,3 @@ class Policy(Model):
         description="whether a plan begins at the robot's position, or at the centre of its cell, "
         "to which it drives first",
     )
-    step_seconds: Positive = Field(
-        0.05,
-        description="how long a step lasts, in seconds: metric `replans_late` counts the plans "
-        "that take longer; left out: 0.05",
-    )

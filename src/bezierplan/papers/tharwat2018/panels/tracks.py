@@ -4,7 +4,7 @@ iterations.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
@@ -24,14 +24,13 @@ if TYPE_CHECKING:
 # Side of the square that is seen, as a share of the extent of what is drawn.
 _CLOSE = 1.2
 
-_NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
-# The first two as the paper has them.
-_LINES = [
-    {"color": colour, "linestyle": dashes}
-    for colour, (_, dashes, _) in zip(
-        (style.BLACK, style.RED, style.BLUE, style.AMBER, "0.5"), style.LOOKS.values()
+# The two runs as the paper has them.
+_LINES = {
+    name: {"color": colour, "linestyle": dashes}
+    for name, colour, (_, dashes, _) in zip(
+        ("first run", "second run"), (style.BLACK, style.RED), style.LOOKS.values()
     )
-]
+}
 _FIRST = style.build_mark_style(
     "o", 7, style.BLUE, markerfacecolor="none", markeredgewidth=1.3, label="first position"
 )
@@ -45,10 +44,7 @@ class Options(RunsPanel):
 
     by: Metric = Field(
         description="the name of a metric: of the feasible runs the best one of each of its "
-        "commonest values is drawn"
-    )
-    runs: Literal[1, 2, 3, 4, 5] = Field(
-        description="of how many of these values, a whole number from 1 to 5"
+        "two commonest values is drawn"
     )
     point: Whole = Field(
         description="the number of the control point whose way is drawn, at least 0"
@@ -82,7 +78,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     parts = [workspaces.list_ends(problem)]
     # The commonest first, ties by size.
     ranked = groups.value_counts().sort_index().sort_values(ascending=False, kind="stable")
-    for group in ranked.index[: options.runs]:
+    for group in ranked.index[: len(_LINES)]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
         paths = execution.track_again(results.jobs[method], run, problem)
         if options.point >= len(paths[0]):
@@ -107,7 +103,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     workspaces.draw_workspace(axes, home)
     style.draw_parts(axes, frame, workspaces.ENDS)
     notes = []
-    for (run, way), name, look in zip(frame.groupby("run"), _NAMES, _LINES):
+    for (run, way), (name, look) in zip(frame.groupby("run"), _LINES.items()):
         axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, label=name, **look)
         cross = style.build_mark_style(
             "X", 7, look["color"], markeredgecolor=style.FREE, label="last position"
