@@ -292,7 +292,8 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
             text = text[text.index("ours") :]
         cells[place] = f"{number['as_printed']}{number['mark']} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
-    head = ", ".join(filter(str.strip, ours.columns[:heads])) or "row"
+    # Where the paper prints no head, the first key of the numbers tells what the rows are.
+    head = ", ".join(filter(str.strip, ours.columns[:heads])) or numbers.columns[0]
     return pd.DataFrame(cells, pd.Index(names, name=head), ours.columns[heads:])
 
 

@@ -45,13 +45,13 @@ class Identification(NamedTuple):
 
     paths: the cells of each of those with fewest edges, or numbers of moves. chance: share of the
     numbers nearby, as printed, that some path matches. length: of the first path, in cells; NaN
-    without one. noun: the word for the numbers of `paths`.
+    without one. moves: how numbers of moves are told; empty for cells.
     """
 
     paths: list[tuple[int, ...]]
     chance: float
     length: float
-    noun: str = "cells"
+    moves: str = ""
 
 
 class Ways(NamedTuple):
@@ -143,21 +143,20 @@ def find_moves(problem: Problem, value: float, diagonal: float) -> Identificatio
     paths = [moves[each] for each in np.flatnonzero(_is_near(lengths, printed, unit / 2))]
     length = paths[0][0] + diagonal * paths[0][1] if paths else math.nan
     chance = _compute_chance(np.sort(lengths), printed, unit / 2)
-    return Identification(
-        paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:"
-    )
+    told = f"{{}} straight moves and {{}} diagonal ones of {diagonal:g}"
+    return Identification(paths, chance, length, told)
 
 
 def describe_paths(identification: Identification) -> str:
     """Describe the matching paths and the chance of a match in one line."""
-    shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
-    more = len(identification.paths) - len(shown)
-    cells = (
-        f"{identification.noun} {' or '.join(shown)}{f' or {more} others' if more else ''}"
-        if shown
-        else "no such path"
-    )
-    return f"{cells}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
+    paths, moves = identification.paths, identification.moves
+    shown = [
+        moves.format(*path) if moves else f"cells {' '.join(map(str, path))}"
+        for path in paths[:MOST_SHOWN]
+    ]
+    more = len(paths) - len(shown)
+    shown += [f"{more} others"] if more else []
+    return f"{' or '.join(shown) or 'no such path'}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
 
 
 def check_declared_paths(
