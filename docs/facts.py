@@ -18,8 +18,10 @@ from bezierplan.schema import checked
 WORDS = {"title": 8, "text": 60}
 """The most words of each."""
 
-# A number that a person typed; those of tables, figures and maps are names.
-_TYPED = re.compile(r"(?<![\w.-])(?!(?<=Table )|(?<=Figure )|(?<=environment ))\d[\d.,]*")
+# A number that a person typed; those of tables, figures, references and maps are names.
+_TYPED = re.compile(
+    r"(?<![\w.-])(?!(?<=Table )|(?<=Figure )|(?<=Ref. \[)|(?<=environment ))\d[\d.,]*"
+)
 _VALUE = re.compile(r"\{(\w+)(?:\.(low|high|holds|rows))?\}")
 
 

@@ -34,13 +34,20 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
-    "Excess: how much longer a curve is than the exact shortest path. Excess and time are medians "
-    "over the problems. The rounded shortest path turns no tighter than the median of the method's "
-    "paths without corners; a dash means that there are none. The method beats it in a problem if "
-    "its median path is shorter, or turns more gently than any rounded shortest path."
+    "Least often free first. Excess: how much longer a free path is than the exact shortest one. "
+    "Excess and time are medians over the problems. The rounded shortest path has no tighter turn "
+    "than half of the method's free paths without corners; a dash means that there are none. The "
+    "method beats it in a problem if its median path is shorter, or if its turns are wider than "
+    "those of any rounded shortest path."
 )
 ALONE = (
-    "The row of the rounded shortest path has the turning radius that it takes if none is asked."
+    "The row of the rounded shortest path has the turning radius that it takes if none is asked; "
+    "where no arc fits, it keeps a corner."
+)
+TESTED = (
+    "Most claims are tested by several comparisons, such as one for each map. By default: as we "
+    "read the paper. In quotes: other ways to read it, or to count. No effect: the difference is "
+    "smaller than our criterion."
 )
 OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
@@ -52,7 +59,9 @@ RANGE = (
 )
 LAID = (
     f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
-    "so it does not count. Times are of another machine: not compared."
+    "so it does not count. Impossible: no runs give it, such as mean ranks that do not add up. "
+    "Times are of another machine: not compared. A number outside our range does not show that the "
+    "paper is wrong, because it does not print all that its numbers depend on."
 )
 MARKS = ("\\*", "†", "‡", "§")
 """Beside printed numbers that prove nothing of the paper, one for each reason."""
@@ -64,7 +73,7 @@ IDENTIFIED = (
     "the printed number, the closest such length, its cells or moves, and the chance that a number "
     "drawn nearby would match as well. A row for several numbers says how many of them match."
 )
-LISTED = "Some printed lengths are [lengths of paths that can be listed](identified.md)."
+LISTED = "Some of its lengths can be [calculated without any run](identified.md)."
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
@@ -173,6 +182,7 @@ def build_paper_page(
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         write_table(main.rename(columns=heads).set_index("claim")),
+        TESTED,
         "## Its methods beside the exact shortest path with rounded corners",
         measured,
         "## Its tables",
@@ -229,7 +239,9 @@ def describe_where_or_why(claim: Mapping[str, Any]) -> str:
     places = claim["where_it_holds"]
     if not isinstance(places, str):
         words = {"supported": "everywhere: ", "contradicted": "nowhere: ", "no effect": "nowhere: "}
-        places = f"{words.get(claim['verdict'], '')}{claim['holds']}"
+        places = f"{words.get(claim['verdict'], '')}{claim['holds']} comparisons"
+    else:
+        places = f"in {claim['holds']} comparisons: {places}"
     ours = re.search(r"Ours: (.*?)\.(?: |$)", reason)
     return f"{places}; our criterion: {ours[1]}" if ours else places
 
@@ -290,7 +302,8 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
         text = comparison.describe_range(number) or f"ours {values.iat[place]}"
         if not number["counted"]:
             text = text[text.index("ours") :]
-        cells[place] = f"{number['as_printed']}{number['mark']} {text}"
+        impossible = " (impossible)" if str(number["possible"]) == "False" else ""
+        cells[place] = f"{number['as_printed']}{number['mark']}{impossible} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     # Where the paper prints no head, the first key of the numbers tells what the rows are.
     head = ", ".join(filter(str.strip, ours.columns[:heads])) or numbers.columns[0]
@@ -324,19 +337,28 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
 
     of_problems: as from `methods.measure_studies`.
     """
-    rows = methods.group_by_family(of_problems)
-    rows = rows[rows["proposed"].astype(bool) & (rows["both"] > 0)]
+    # Where every straight line is free, nobody can be shorter.
+    straight = of_problems.groupby(["study", "family"])["straight"].transform("all")
+    rows = methods.group_by_family(of_problems[~straight.astype(bool)])
+    own = rows["proposed"].astype(bool)
+    times = [
+        f"{each.min():.2g} to {each.max():.3g} ms"
+        for each in (rows.loc[rows["method"] == "rounded", "cpu_ms"], rows.loc[own, "cpu_ms"])
+    ]
+    rows = rows[own & (rows["both"] > 0)]
     others = rows[rows["adds"] > 0]
-    times = methods.group_by_family(of_problems[of_problems["method"] == "rounded"])["cpu_ms"]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and takes {times.min():.2g} to {times.max():.2g} ms. "
+        f"and takes {times[0]}; the papers' methods take {times[1]}. "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
-        "with smooth paths, the paper's method never beats it, by a smoother path or by a shorter "
-        "one as smooth"
+        "with smooth paths, the paper's method never beats it: it is never shorter with turns as "
+        "wide, nor are its turns wider"
     )
-    beaten = " and ".join(f"{each.adds:.0f} of {each.both:.0f}" for each in others.itertuples())
-    return f"{told}; in the others, it does in {beaten} problems." if beaten else f"{told}."
+    beaten = " and ".join(
+        f"in {each.adds:.0f} of {each.both:.0f} ({format_name(each.study)}, {each.family})"
+        for each in others.itertuples()
+    )
+    return f"{told}. In the others, it beats it {beaten} problems." if beaten else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:

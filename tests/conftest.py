@@ -30,9 +30,9 @@ SOURCE = str(ROOT / "src")
 sys.path[:0] = [SOURCE, str(ROOT / "docs")]
 os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.get("PYTHONPATH")])])
 
-from bezierplan.places import set_kernel_target  # noqa: E402
+from bezierplan.places import choose_machine_code  # noqa: E402
 
-set_kernel_target()
+choose_machine_code()
 
 import pytest  # noqa: E402
 from hypothesis import configuration, settings  # noqa: E402

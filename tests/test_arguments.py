@@ -139,6 +139,12 @@ def test_wrong_numbers_of_a_file_are_told_by_name(arguments, tmp_path):
         bp.plan(PROBLEM).save(tmp_path / "path.csv", **arguments)
 
 
+@pytest.mark.parametrize("step", [1e-308, 1e-9])
+def test_a_tiny_step_is_told(step):
+    with pytest.raises(ValueError, match=f"^step: {step}; expected at most .* samples"):
+        bp.plan(PROBLEM).sample(step=step)
+
+
 BORDER = (-5.0, 5.0, -5.0, 5.0)
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 

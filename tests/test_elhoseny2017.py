@@ -186,3 +186,18 @@ def test_the_control_without_the_loop_evaluates_as_many_paths():
 )
 def test_numbers_of_maps_that_are_not_printed_are_not_compared_with_bounds(key, reconstructed):
     assert set(jobs.build_audit(study(key), "smoke").reconstructed) == reconstructed
+
+
+@pytest.mark.parametrize(
+    ("key", "table", "reconstructed"),
+    [
+        ("song2016", "table1", []),
+        ("elhoseny2017", "table2", ["published_like"]),
+        ("tharwat2018", "table6", ["random"]),
+        ("ma2020", "table1", ["environment1", "environment2"]),
+    ],
+)
+def test_a_table_knows_which_of_its_maps_are_not_printed_drawn_ones_too(key, table, reconstructed):
+    """The table's runs are of problems that are named after their layout: the workspace is not."""
+    job = jobs.build_table_of_runs(study(key), "full", table)
+    assert job.reconstructed == reconstructed

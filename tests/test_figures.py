@@ -459,9 +459,8 @@ def test_convergence_of_groups_holds_last_values_and_their_intervals():
     # same draws.
     width = (frame["high95"] - frame["low95"]).groupby(frame["method"]).agg(["first", "last"])
     np.testing.assert_allclose(width["first"], width["last"])
-    own = options_of(convergence, hue="points", statistic="median")
-    median = convergence.data(comparison(), own)
-    assert median.loc[median["points"] == 3, "objective"].iloc[-1] == pytest.approx(36.5)
+    mean = convergence.data(comparison(), options_of(convergence, hue="points"))
+    assert mean.loc[mean["points"] == 3, "objective"].iloc[-1] == pytest.approx(36.5)
 
 
 def test_order_of_runs_changes_no_bit():

@@ -45,6 +45,7 @@ def results(values):
             "id": f"s/e/long/{method}/{repeat}",
             "condition": "long",
             "problem": "long",
+            "workspace": "room",
             "method": method,
             "drew": True,
             "repeat": repeat,

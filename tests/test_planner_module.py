@@ -1,5 +1,6 @@
 """Planners of a reader's own, with modules of the reader's own beside them."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from commands import call
 from starts import appear
 
 from bezierplan import __main__
+from bezierplan.machine.modules import load_module
 from bezierplan.planners import load_planner
 
 PLANNER = """
@@ -38,6 +40,20 @@ def folder_with(folder, value):
 def test_planners_find_the_modules_beside_them_and_no_others(tmp_path):
     first, second = (load_planner(folder_with(tmp_path / str(value), value)) for value in (1, 2))
     assert [each.plan(None, None, tries=1) for each in (first, second, first)] == ["11", "22", "11"]
+
+
+def test_a_quick_edit_beside_a_planner_is_never_missed(tmp_path):
+    """Python takes a compiled file for that of a source with the same second and size."""
+    planner = folder_with(tmp_path / "walk", 1)
+    shared = Path(planner).with_name("shared.py")
+    at = shared.stat().st_mtime_ns
+    plans = []
+    for value in (1, 2):
+        shared.write_text(f"VALUE = {value}\n")
+        os.utime(shared, ns=(at, at))
+        load_module.cache_clear()
+        plans.append(load_module(planner).plan(None, None, tries=1))
+    assert plans == ["11", "12"]
 
 
 SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"

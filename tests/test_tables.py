@@ -58,6 +58,7 @@ def results(repeats: int = 20) -> Results:
             "id": f"study/experiment/{problem}/{method}/{repeat}",
             "condition": problem,
             "problem": problem,
+            "workspace": f"{problem}_map",
             "method": method,
             "drew": True,
             "repeat": repeat,
@@ -405,8 +406,8 @@ def test_published_minimum_below_the_bound_is_impossible_and_lies_below():
     ("reason", "changed", "defined", "reconstructed", "fitted"),
     [
         (comparison.UNDEFINED, {}, False, [], {}),
-        (comparison.NO_MAP, {}, True, ["long"], {}),
-        ("", {}, True, ["brief"], {}),
+        (comparison.NO_MAP, {}, True, ["long_map"], {}),
+        ("", {}, True, ["brief_map"], {}),
         (comparison.ONE_DRAW, {"layout": 3}, True, [], {}),
         (comparison.FITTED, {}, True, [], {"length": {"method": ["plain"]}}),
     ],

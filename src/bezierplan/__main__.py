@@ -13,7 +13,7 @@ from typing import NoReturn
 
 import bezierplan
 from bezierplan.commands import arguments
-from bezierplan.places import EXTRA, PACKAGE, require_extra, set_kernel_target
+from bezierplan.places import EXTRA, PACKAGE, choose_machine_code, require_extra
 from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, describe_known
 
@@ -80,7 +80,7 @@ def _refuse(*lines: str) -> NoReturn:
 
 def start() -> None:
     """Run the command line of this process."""
-    set_kernel_target()
+    choose_machine_code()
     try:
         main(sys.argv[1:])
     except KeyboardInterrupt:

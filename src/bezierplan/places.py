@@ -42,6 +42,10 @@ def require_extra() -> Iterator[None]:
         ) from None
 
 
+# Parts of numpy for processors beyond x86-64-v3, as old and new versions name them.
+_LATER_FEATURES = "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR X86_V4"
+
+
 def find_cache_folder() -> Path:
     """Return the folder for what can be made again: `.cache` in a clone that can be written,
     otherwise the user's cache.
@@ -55,19 +59,20 @@ def find_user_cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / usual) / "bezierplan"
 
 
-def set_kernel_target() -> None:
-    """Let this process and those that it starts compile kernels for a whole family of processors
-    instead of its own, so that machines share them.
+def choose_machine_code() -> None:
+    """Let this process and those that it starts use machine code for a whole family of processors
+    instead of code for this one, so that kernels can be shared and all last bits are equal.
     """
     flags = Path("/proc/cpuinfo")
     words = flags.read_text(encoding="utf-8").split() if flags.is_file() else []
     # Every processor of the kind x86-64-v3 has these, and older ones lack some.
-    named = (
-        "x86-64-v3" if {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words} else "generic"
-    )
-    # numba reads this when it is imported.
-    os.environ.setdefault("NUMBA_CPU_NAME", named)
+    usual = {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words}
+    # numba and numpy read these when they are imported.
+    os.environ.setdefault("NUMBA_CPU_NAME", "x86-64-v3" if usual else "generic")
     os.environ.setdefault("NUMBA_CPU_FEATURES", "")
+    if usual:
+        os.environ.setdefault("OPENBLAS_CORETYPE", "Haswell")
+        os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", _LATER_FEATURES)
 
 
 def shorten_path(path: Path) -> str:

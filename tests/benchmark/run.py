@@ -15,9 +15,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
-from bezierplan.places import TREE, set_kernel_target
+from bezierplan.places import TREE, choose_machine_code
 
-set_kernel_target()
+choose_machine_code()
 
 import frame  # noqa: E402
 import pandas as pd  # noqa: E402

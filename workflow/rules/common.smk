@@ -14,9 +14,9 @@ os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 
-from bezierplan.places import set_kernel_target
+from bezierplan.places import choose_machine_code
 
-set_kernel_target()
+choose_machine_code()
 
 from snakemake.cli import get_argument_parser
 from snakemake.iocontainers import Wildcards

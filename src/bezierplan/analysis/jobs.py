@@ -6,7 +6,6 @@ its files are what it makes.
 `run` imports what it needs itself: the workflow makes jobs at every start, and imports none of it.
 """
 
-import hashlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
@@ -21,6 +20,7 @@ from bezierplan.machine.digest import (
     compute_content_digest,
     describe_code,
     find_sources,
+    hash_text,
     name_module,
 )
 from bezierplan.machine.modules import is_file
@@ -83,7 +83,7 @@ class Job(ABC):
         text = repr([(name, getattr(self, name)) for name in names])
         works = type(self).run, type(self).write
         return (
-            {"settings": hashlib.sha256(text.encode()).hexdigest()[:16]}
+            {"settings": hash_text(text)}
             | describe_code(works, *sorted(set(self.list_modules())))
             | {"sources": compute_content_digest(*self.sources)}
         )
@@ -91,7 +91,7 @@ class Job(ABC):
     @cached_property
     def key(self) -> str:
         """Return the digest of the account, under which the opened files are kept."""
-        return hashlib.sha256(repr(self.account).encode()).hexdigest()[:16]
+        return hash_text(repr(self.account))
 
     @property
     def grounds(self) -> dict[str, str]:
@@ -193,7 +193,7 @@ class TableOfRuns(Job):
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
     reconstructed: list[str]
-    """Problems on maps that the paper does not print."""
+    """Workspaces that the paper does not print."""
     fitted: dict[str, dict]
     """By metric, the numbers to which something was fitted."""
     paired: bool
@@ -252,11 +252,12 @@ class TableWithoutRuns(Job):
         from bezierplan.analysis.numbers import listing
         from bezierplan.running import inputs
 
-        published, functions = (
+        table = listing.build_listing(
+            self.spec,
             inputs.group_by_table(input_files.sources),
             study_code.load_functions(self.code),
         )
-        self.write(listing.build_listing(self.spec, published, functions), output_files[0])
+        self.write(table, output_files[0])
 
 
 @dataclass(frozen=True)

@@ -150,12 +150,12 @@ def of_path(unit: str, meaning: str, **facts: Any) -> Callable[[F], F]:
     """Return a decorator like `metric` for a measure of a path; over feasible runs unless said
     otherwise.
     """
-
-    def apply_to_runs(measure: Callable[[Path], float]) -> Compute:
-        """Turn a measure of a path into one of (runs, problems)."""
-        return partial(measure_on_maps, lambda path, _: measure(path))
-
-    return metric(unit, meaning, apply_to_runs, **{"feasible_only": True} | facts)
+    return metric(
+        unit,
+        meaning,
+        lambda measure: partial(measure_on_maps, lambda path, _: measure(path)),
+        **{"feasible_only": True} | facts,
+    )
 
 
 def on_map(unit: str, meaning: str, *kinds: str, **facts: Any) -> Callable[[F], F]:

@@ -1,8 +1,13 @@
-"""Amounts with their units, and names as they are printed."""
+"""Amounts with their units, and names and values as they are printed."""
+
+from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Labels = Mapping[str, str]
 """Name -> how it is printed."""
@@ -51,6 +56,16 @@ def format_value(value: Any, column: str, labels: Labels) -> str:
 def name_column(column: str, labels: Labels) -> str:
     """Name a column or a metric as printed."""
     return labels.get(column, column.replace("_", " "))
+
+
+def list_in_order(values: pd.Series, where: Mapping[str, Any]) -> list[Any]:
+    """List the distinct values of a column: first those that `where` lists, in its order, then the
+    others, sorted.
+    """
+    first = where.get(values.name)
+    listed = first if isinstance(first, list) else []
+    present = values.dropna().unique().tolist()
+    return [value for value in listed if value in present] + sorted(set(present) - set(listed))
 
 
 def format_heading(name: str) -> str:

@@ -1,6 +1,5 @@
 """Run tables below a folder of results: their digests, and single rows of them."""
 
-import hashlib
 import json
 from pathlib import Path
 from typing import Any
@@ -9,6 +8,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
+from bezierplan.machine.digest import hash_text
 from bezierplan.running.chunk import find_chunk_files
 
 
@@ -17,10 +17,10 @@ def list_run_tables(folder: Path) -> dict[str, list[Path]]:
     FileNotFoundError if there is none.
     """
     tables: dict[str, list[Path]] = {}
-    for file in find_chunk_files(folder):
-        *_, folder, reading, _, experiment, method, _ = file.parts
+    for file in find_chunk_files(folder.resolve()):
+        *_, above, reading, _, experiment, method, _ = file.parts
         # A study under a reading has a folder below the study's own.
-        study = file.parts[-7:-4] if folder in ("readings", "alternatives") else [reading]
+        study = file.parts[-7:-4] if above in ("readings", "alternatives") else [reading]
         tables.setdefault("/".join([*study, experiment, method]), []).append(file)
     if not tables:
         raise FileNotFoundError(
@@ -36,7 +36,7 @@ def compute_table_digest(files: list[Path]) -> str:
     Neither the order of the files nor the split of repeats into chunks matters.
     """
     rows = {format_row(row) for file in files for row in _read_rows(file)}
-    return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]
+    return hash_text("\n".join(sorted(rows)))
 
 
 def format_row(row: dict[str, Any]) -> str:

@@ -22,26 +22,20 @@ def load_functions(code: Iterable[str]) -> dict[str, Callable[..., Any]]:
     """
     for name in code:
         load_module(name)
-    return {"marks": drawings.list_marks} | load_part(select_part(code, "functions"))
+    return {"marks": drawings.list_marks} | load_part(code, "functions")
 
 
 def load_audit(code: Iterable[str]) -> Callable[[dict[str, pd.DataFrame]], list[dict]]:
     """Load the audit of a study's printed numbers: its own, or the rules that its file lists."""
-    return load_part(select_part(code, "audit")).get("audit", rules.check_rules)
+    return load_part(code, "audit").get("audit", rules.check_rules)
 
 
-def select_part(code: Iterable[str], part: str) -> list[str]:
-    """Select the module of a part from a study's code, as a list of one or none."""
-    return [name for name in code if name_part(name) == part]
-
-
-def load_part(code: list[str]) -> dict[str, Callable[..., Any]]:
-    """Load the public functions of a module that a study may have, given as a list of one
-    or none.
-    """
+def load_part(code: Iterable[str], part: str) -> dict[str, Callable[..., Any]]:
+    """Load the public functions of a part from a study's code; none if it has no such module."""
+    own = [name for name in code if name_part(name) == part]
     return {
         name: value
-        for module in map(load_module, code)
+        for module in map(load_module, own)
         for name, value in vars(module).items()
         if not name.startswith("_")
         and callable(value)

@@ -70,7 +70,8 @@ def main(
         # Before planning, which may take long.
         arguments.check_suffix("out", out, FILES)
         # A ROS map's image lies beside it, mostly under its name, and must not be lost.
-        if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
+        own = map.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix("")
+        if own and out.exists():
             raise Fault(f"out: {out}: is there, with the map's name; expected another file")
     if not map.suffix and not map.exists():
         map = api.example_map(str(map))
@@ -81,10 +82,11 @@ def main(
     answer = api.plan(problem, **options, **settings)
     if answer.cpu_s < _LONG:
         answer = api.plan(problem, **options, **settings)
+    lines = judgement.describe_answer(answer)
     if out and answer.path:
         answer.save(out, step=step)
-    file = {"file": str(out)} if out and answer.path else {}
-    for name, text in (judgement.describe_answer(answer) | file).items():
+        lines["file"] = str(out)
+    for name, text in lines.items():
         print(f"{name:16}{text}")
     # The input is right, but there is no path: status 1.
     if not math.isfinite(answer.shortest):

@@ -112,9 +112,7 @@ class FigureFiles(Job):
         }
         places, _ = problem_files.build_all(self.problems, Path(self.folder))
         problems = {name: runs.problems for name, runs in experiments.items()}
-        drawings = study_code.load_part(
-            [name for name in self.code if study_code.name_part(name) == "panels"]
-        )
+        drawings = study_code.load_part(self.code, "panels")
         scene = sheet.FigureScene(
             problems, workspaces, self.labels, self.unit, self.looks, drawings, self.layout, places
         )

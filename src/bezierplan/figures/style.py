@@ -202,7 +202,7 @@ def list_groups(
 
     The style has the printed name of the value as its label.
     """
-    values = list_in_order(frame[column], options.where)
+    values = naming.list_in_order(frame[column], options.where)
     return [
         (
             value,
@@ -255,13 +255,3 @@ def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
     axes.tick_params(axis="x", length=0)
     axes.set_xlabel(label)
     axes.grid(visible=True, axis="y")
-
-
-def list_in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
-    """Return the distinct values of a column: first those that `where` lists, in its order, then
-    the others, sorted.
-    """
-    first = where.get(values.name)
-    listed = first if isinstance(first, list) else []
-    present = values.dropna().unique().tolist()
-    return [value for value in listed if value in present] + sorted(set(present) - set(listed))

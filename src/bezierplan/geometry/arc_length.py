@@ -1,4 +1,4 @@
-"""Arc length of Bézier pieces."""
+"""Arc length of Bézier pieces and of polylines."""
 
 import math
 
@@ -8,6 +8,19 @@ from bezierplan.kernels import allocation_free, compile_kernel
 
 _NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
 _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
+
+
+def measure_lengths(points: np.ndarray) -> np.ndarray:
+    """Return the length (n,) of a polyline (n, 2) up to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+
+
+def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
+    """Return places (..., 2), at some values, of what moves straight from point to point (n, 2).
+
+    at: (n,) the value at each point.
+    """
+    return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
 
 
 @allocation_free

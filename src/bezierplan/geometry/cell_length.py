@@ -16,6 +16,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry import curves
+from bezierplan.geometry.arc_length import find_places, measure_lengths
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
@@ -337,10 +338,9 @@ def length_by_points(path: Path, grid: Grid) -> float:
     3.5
     """
     walked = np.column_stack(sample_in_cells(path, grid))
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(walked, axis=0).T))])
+    at = measure_lengths(walked)
     wanted = np.linspace(0.0, at[-1], math.ceil(at[-1]) + 1)
-    points = np.column_stack([np.interp(wanted, at, along) for along in walked.T])
-    steps = np.abs(np.diff(np.floor(points), axis=0))
+    steps = np.abs(np.diff(np.floor(find_places(walked, at, wanted)), axis=0))
     return (
         float((STRAIGHT * steps.max(axis=1) + (DIAGONAL - STRAIGHT) * steps.min(axis=1)).sum())
         * grid.cell

@@ -180,6 +180,16 @@ def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray
     return piece, (steps - piece * (samples - 1)) / (samples - 1)
 
 
+def evaluate_pieces(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the points (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
+    return np.einsum("sk,skd->sd", bernstein(pieces.shape[1] - 1, t), pieces)
+
+
+def differentiate_pieces(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Return the derivatives (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
+    return (pieces.shape[1] - 1) * evaluate_pieces(np.diff(pieces, axis=1), t)
+
+
 @cache
 def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
     """Return the linear map from control points to samples, uniform in the parameter over the whole
@@ -187,7 +197,7 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
     """
     matrix = piece_matrix(curve, points)
     piece, t = sample_parameters(len(matrix), samples)
-    basis = np.einsum("sk,skp->sp", bernstein(matrix.shape[1] - 1, t), matrix[piece])
+    basis = evaluate_pieces(matrix[piece], t)
     basis.setflags(write=False)
     return basis
 
@@ -239,14 +249,9 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
 def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return curvature (n,) and speed (n,) of pieces (n, degree + 1, 2) at one parameter each."""
     degree = pieces.shape[1] - 1
-    first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
-    second = np.zeros_like(first)
-    if degree > 1:
-        second = (
-            degree
-            * (degree - 1)
-            * np.einsum("sk,skd->sd", bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1))
-        )
+    first = differentiate_pieces(pieces, t)
+    # Of straight pieces there are no second differences, and their sum is 0.
+    second = degree * (degree - 1) * evaluate_pieces(np.diff(pieces, n=2, axis=1), t)
     speed = np.hypot(first[:, 0], first[:, 1])
     moving = speed > STANDSTILL * speed.max()
     kappa = np.full(len(t), np.nan)

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.limits import Bounds
-from bezierplan.workspaces.polygons import Polygons, cross, list_rings, normalise
+from bezierplan.workspaces.grid import Grid, add_wall, find_occupied_around, find_runs
+from bezierplan.workspaces.polygons import Polygons, cross, list_rings, list_sides, normalise
 from bezierplan.workspaces.problem import Workspace
 
 if TYPE_CHECKING:
@@ -197,28 +196,6 @@ def _element(coordinate: float, tolerance: float) -> int:
     )
 
 
-def border_edges(bounds: Bounds) -> np.ndarray:
-    """Return the four edges (4, 4) of a border, as x, y, x, y."""
-    left, right, bottom, top = bounds
-    corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
-    return np.hstack([corners, np.roll(corners, -1, axis=0)])
-
-
-def add_wall(occupied: np.ndarray) -> np.ndarray:
-    """Add a ring of occupied cells, which represents the outside: bool (rows + 2, columns + 2)."""
-    return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
-
-
-def find_occupied_around(cells: np.ndarray) -> np.ndarray:
-    """Return which cells around each inner vertex of cells with a wall (`add_wall`) are occupied:
-    bool (4, rows + 1, columns + 1).
-
-    In the order below left, below right, above left, above right. Vertex [i, j] lies at x = j and y
-    = i, in cells.
-    """
-    return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
-
-
 def _build_grid_region(grid: Grid) -> GridRegion:
     """Build the region of cells, as elements of the doubled grid."""
     from bezierplan.geometry.bins import sort_into_bins
@@ -248,22 +225,13 @@ def _build_grid_region(grid: Grid) -> GridRegion:
     )
 
 
-def find_runs(boundary: np.ndarray) -> np.ndarray:
-    """Find maximal runs of true values in the rows of a bool array.
-
-    Returns (n, 3): row, first column, column after the last.
-    """
-    around = np.pad(boundary, ((0, 0), (1, 1)))
-    # Where a run begins and ends, in turn.
-    row, column = np.nonzero(around[:, 1:] != around[:, :-1])
-    return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
-
-
 def _build_circle_region(circles: Circles) -> CircleRegion:
     """Build the region of discs and of the outside of the border."""
     from bezierplan.geometry.bins import sort_into_bins
 
-    edges = border_edges(circles.bounds)
+    left, right, bottom, top = circles.bounds
+    corners = [[left, bottom], [right, bottom], [right, top], [left, top]]
+    edges = list_sides(np.array(corners, float))
     # Copies: a region shares no memory with the workspace that a planner holds.
     return CircleRegion(
         np.array(circles.centres, float).reshape(-1, 2),

@@ -75,12 +75,13 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
     if step is not None:
         if not isinstance(step, Real) or not 0 < step < math.inf:
             raise ValueError(f"step: {step!r}; expected a number above 0")
-        # A length that is a multiple of the step up to rounding gets no sample more.
-        n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
+        # A length that is a multiple of the step up to rounding gets no sample more. Of a tiny step
+        # the quotient may be infinite.
+        n = max(2, math.ceil(min(float(length) / step, _MOST) * (1 - 1e-12)) + 1)
     if not isinstance(n, int | np.integer) or n < 2:
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
     if n > _MOST:
-        given = f"n: {n}" if step is None else f"step: {step}: {n} samples"
+        given = f"n: {n}" if step is None else f"step: {step}"
         raise ValueError(f"{given}; expected at most {_MOST} samples")
     distance = np.linspace(0.0, length, n)
     interval = np.clip(np.searchsorted(cumulative, distance, side="right") - 1, 0, len(speeds) - 1)
@@ -96,7 +97,7 @@ def sample_along(path: Path, n: int | None = None, step: float | None = None) ->
         t = np.clip(t + change, low, low + width)
     # Both ends to the last bit, whatever Newton's method leaves.
     t[0], t[-1] = 0.0, 1.0
-    points = _values(pieces[piece], t)
+    points = curves.evaluate_pieces(pieces[piece], t)
     points[0], points[-1] = pieces[0, 0], pieces[-1, -1]
     return Samples(
         distance,
@@ -116,20 +117,9 @@ def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarr
     return half * total
 
 
-def _values(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return the points (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
-    return np.einsum("sk,skd->sd", curves.bernstein(pieces.shape[1] - 1, t), pieces)
-
-
-def _derivatives(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return the derivatives (n, 2) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
-    degree = pieces.shape[1] - 1
-    return degree * _values(np.diff(pieces, axis=1), t)
-
-
 def _speed(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Return the speeds (n,) of pieces (n, degree + 1, 2) at one parameter each (n,)."""
-    return np.hypot(*_derivatives(pieces, t).T)
+    return np.hypot(*curves.differentiate_pieces(pieces, t).T)
 
 
 def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -138,13 +128,14 @@ def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
     Where the curve stands still, it is the direction to a point just ahead, or at a piece's end
     from one just behind.
     """
-    direction = _derivatives(pieces, t)
+    direction = curves.differentiate_pieces(pieces, t)
     size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))
     still = np.hypot(*direction.T) <= curves.STANDSTILL * size
     if still.any():
         ahead = np.where(t < 0.5, t + 1e-3, t)
         behind = np.where(t < 0.5, t, t - 1e-3)
-        direction[still] = (_values(pieces, ahead) - _values(pieces, behind))[still]
+        between = curves.evaluate_pieces(pieces, ahead) - curves.evaluate_pieces(pieces, behind)
+        direction[still] = between[still]
         direction[size == 0] = 0.0  # the whole piece is one place: no rounding error is a heading
     return np.arctan2(direction[:, 1], direction[:, 0])
 

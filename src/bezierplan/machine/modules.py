@@ -38,6 +38,9 @@ def load_module(name: str) -> ModuleType:
     spec = importlib.util.spec_from_file_location(key, name)
     made = importlib.util.module_from_spec(spec)
     known = {*sys.modules, key}
+    # A compiled file is known by second and size of its source: after a quick edit, the old one
+    # would run.
+    written, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     sys.path.append(str(file.parent))  # last, so that no user file shadows a library
     sys.modules[key] = made
     try:
@@ -46,6 +49,7 @@ def load_module(name: str) -> ModuleType:
         sys.modules.pop(key, None)  # whatever the file has done before it failed
         raise
     finally:
+        sys.dont_write_bytecode = written
         sys.path.remove(str(file.parent))
         # Files of another study may have modules of the same name next to them.
         beside = {each.stem for each in file.parent.iterdir()}

@@ -23,6 +23,7 @@ from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.planners.parts.sorting import ascending
+from bezierplan.workspaces.grid import add_wall
 from bezierplan.workspaces.lattice import drop_straight_vertices
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -78,7 +79,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     elhoseny2017, Tables 2, 3 and 6.
     """
     grid = problem.workspace
-    walls = np.pad(grid.occupied, 1, constant_values=True)
+    walls = add_wall(grid.occupied)
     ends = grid.in_cells(np.array([problem.start, problem.target], float))
     # An end on the upper or right border lies in the last cell; the frame shifts all by one.
     (start_column, target_column), (start_row, target_row) = (

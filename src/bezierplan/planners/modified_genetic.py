@@ -22,6 +22,7 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
+from bezierplan.planners.parts.diversity import count_shared
 from bezierplan.planners.parts.gene_curves import (
     MOST_POINTS,
     CurveKind,
@@ -471,7 +472,8 @@ def _is_too_alike(ones, cost, pool, fill, eta, genes, diversity):
     for i in range(fill):
         other = pool.ones[i, : pool.count[i]]
         if diversity == Diversity.relaxing:
-            total += gene_lists.compute_q(ones, other, genes)
+            both = count_shared(ones, other)
+            total += gene_lists.compute_q(both, len(ones), len(other), genes)
         elif cost == pool.cost[i] and is_same(ones, other):
             return True
     return diversity == Diversity.relaxing and total > (1.0 - eta) * fill

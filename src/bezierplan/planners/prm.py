@@ -21,6 +21,7 @@ from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.trace import trace_back
 
 extra = ("roads",)
 workspaces = ("circles", "grid")
@@ -229,7 +230,4 @@ def _find_shortest_way(count, tails, heads, lengths):
                 far[other], before[other] = so_far, node
                 heapq.heappush(heap, (so_far, other))
             k = older[k]
-    way = [1]
-    while before[way[-1]] >= 0:
-        way.append(before[way[-1]])
-    return far[1], np.array(way[::-1]) if far[1] < np.inf else np.empty(0, np.int64)
+    return far[1], trace_back(before, 1, far[1])

@@ -177,23 +177,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         return Plan.of_one(None, math.inf, "no way", nothing)
     points, radii, trials = _round(problem, bound, settings)
     path = Path("cubic_chain", points)
-    length = curves.length(path)
     is_round = radii > 0
-    return Plan(
-        path=path,
-        objective=length,
-        claimed_feasible=True,
-        evaluations=trials,
-        history=np.array([length]),
-        stop="exact",
-        extra={
-            "turns": len(radii),
-            "corners": int((~is_round).sum()),
-            "least_radius": float(
-                radii[is_round].min(initial=math.inf) if is_round.any() or not len(radii) else 0
-            ),
-        },
-    )
+    told = {
+        "turns": len(radii),
+        "corners": int((~is_round).sum()),
+        "least_radius": float(
+            radii[is_round].min(initial=math.inf) if is_round.any() or not len(radii) else 0
+        ),
+    }
+    return Plan.of_one(path, curves.length(path), "exact", told)._replace(evaluations=trials)
 
 
 def _round(

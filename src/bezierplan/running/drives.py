@@ -106,4 +106,6 @@ def replan_times(ride: Ride) -> DriveTimes:
     seconds = np.array([plan.seconds for plan in ride.plans[1:]])
     if not len(seconds):
         return DriveTimes(math.nan, math.nan, math.nan)
-    return DriveTimes(float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max()))
+    return DriveTimes(
+        float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max())
+    )

@@ -300,15 +300,12 @@ def run_chunk(
     many = len(found) >= wanted * (5 if drew else 2)
     if not deterministic and 0 < wanted == len(answers) and many:
         log.say(f"{describe_chunk(chunk)}: {worker.ALIKE[drew]}")
-    if not moving:
-        return table_files.build_table(runs, Planned, Outcome), table_files.build_table(
-            times, Times
-        )
-    return (
+    # Columns of drives alone are declared for all runs: where no row has them, there are none.
+    tables = (
         table_files.build_table(runs, Planned, Outcome, DriveOutcome),
         table_files.build_table(times, Times, DriveTimes),
-        pa.Table.from_pylist(traces),
     )
+    return (*tables, pa.Table.from_pylist(traces)) if moving else tables
 
 
 def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int]]:

@@ -215,7 +215,7 @@ def compute_bounds(problems: Problems, moving: Worlds) -> "pa.Table":
         if world:
             row |= DriveBound(bounds.bound_arrival(world, problem))._asdict()
         made.append(row)
-    return table_files.build_table(made, Bound, *([DriveBound] if moving else []))
+    return table_files.build_table(made, Bound, DriveBound)
 
 
 def _compute_cell_bound(problem: Problem) -> float:

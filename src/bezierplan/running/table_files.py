@@ -24,7 +24,8 @@ _TYPES = {
 
 
 def build_table(rows: list[columns.Row], *declared: type) -> pa.Table:
-    """Build a table from rows. Declared columns have their types, others that of their values.
+    """Build a table from rows. Declared columns, as far as rows have them, have their types, others
+    that of their values.
 
     Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError
     for a row that lacks a declared column, and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a

@@ -2,7 +2,6 @@
 functions make its jobs.
 """
 
-import itertools
 import math
 import re
 from collections.abc import Iterable
@@ -235,7 +234,10 @@ def list_experiments(claims: Iterable[Claim]) -> list[str]:
     a variant names.
     """
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
-    named += itertools.chain.from_iterable(
-        convert_to_list(value) for claim in claims for value in claim.variants.get("experiment", [])
-    )
+    named += [
+        name
+        for claim in claims
+        for value in claim.variants.get("experiment", [])
+        for name in convert_to_list(value)
+    ]
     return list(dict.fromkeys(named))

@@ -4,7 +4,7 @@ configuration.
 Kinds of table and of figure are defined beside the code that makes them.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -12,17 +12,8 @@ from bezierplan.analysis.table_kinds import TABLES, TableEntry
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.layout import Layout
-from bezierplan.schema.model import (
-    Line,
-    Model,
-    Name,
-    Setting,
-    build_choice_type,
-    build_list_type,
-    build_mapping_type,
-)
-from bezierplan.study.experiments import Settings
-from bezierplan.workspaces.kinds import FileName
+from bezierplan.schema.model import Line, Model, Name, build_choice_type, build_list_type
+from bezierplan.study.experiments import SettingsByPlanner
 
 
 class ArtefactsFile(Model):
@@ -60,10 +51,8 @@ class ConfigFile(Model):
     studies: build_list_type(Line) = Field(
         description="a list of studies, each the name of a folder in `config/studies` or a path"
     )
-    settings: dict[Name, dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]]] = (
-        Field(
-            {},
-            description="study → settings that override those of the same name in its "
-            "`experiments.yaml`",
-        )
+    settings: dict[Name, SettingsByPlanner] = Field(
+        {},
+        description="study → settings that override those of the same name in its "
+        "`experiments.yaml`",
     )

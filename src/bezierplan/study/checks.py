@@ -88,11 +88,11 @@ class Checks:
             "baseline": study.baselines,
             "policy": study.policies,
             "function": study_code.load_functions(study.code_for("functions")),
-            "world": study_code.load_part(study.code_for("worlds")),
-            "drawing": study_code.load_part(study.code_for("panels")),
+            "world": study_code.load_part(study.code_for("worlds"), "worlds"),
+            "drawing": study_code.load_part(study.code_for("panels"), "panels"),
             "statistic": statistics.STATISTICS,
             "compared": study.find_published_tables(),
-            "artefact": {**study.tables, **study.figures},
+            "artefact": study.tables | study.figures,
             "printed table": [Path(file).stem for file in study.list_published_files()],
             "claim": [claim.id for claim in study.claims],
         }
@@ -180,7 +180,7 @@ class Checks:
             self.check_labels()
         with self.at(shorten_path(study.folder / "layout.yaml")):
             sound = [name for name in study.layout if name not in self.invalid]
-            check_all(sound, {**study.tables, **study.figures}, "layout")
+            check_all(sound, study.tables | study.figures, "layout")
         for file, section, key, work in (
             ("claims", "claims", "id", self.check_claim),
             ("assumptions", "assumptions", "id", self.check_assumption),
@@ -251,8 +251,8 @@ class Checks:
         """Check that each setting of a method has a value that its planner accepts, also on
         problems where an assumption changes it.
         """
-        own = [each.problems for each in study.assumptions if each.id in study.values]
-        for problem in {"", *itertools.chain.from_iterable(own)}:
+        chosen = [each for each in study.assumptions if each.id in study.values]
+        for problem in dict.fromkeys(["", *(name for each in chosen for name in each.problems)]):
             settings = study.resolve_settings(name) | study.find_changed_settings(name, problem)
             try:
                 interface.check_settings(load_planner(study.planner(name)), settings, "settings")

@@ -25,7 +25,7 @@ from bezierplan.schema.model import (
     match_text,
     show_value,
 )
-from bezierplan.study.experiments import ProblemName
+from bezierplan.study.experiments import Problems
 
 AssumptionId = Annotated[str, match_text(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")]
 
@@ -65,7 +65,7 @@ class AssumptionEntry(Model):
     methods: build_list_type(Annotated[Name, Names("method")]) = Field(
         [], description="the methods for which alone the alternatives of a setting are"
     )
-    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
+    problems: Problems = Field(
         [],
         description="the problems on which alone the alternatives of a setting hold; the "
         "default is the value that is used on them",

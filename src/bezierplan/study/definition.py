@@ -117,15 +117,16 @@ class Study(Experiments, ArtefactsFile):
         file = getattr(self.complete_table(table), "published", None)
         return file and shorten_path(self.folder / "published" / file)
 
-    def list_reconstructed_problems(self, table: Pivot) -> list[str]:
-        """Return the problems of a table whose maps the paper does not print."""
-        problems = self.experiments[table.experiment].problems
-        shown = convert_to_list(table.where.get("problem", problems))
-        return [
-            name
-            for name in problems
-            if name in shown and self.workspace_of(name).origin == "reconstructed"
-        ]
+    def list_reconstructed_workspaces(self, table: Pivot) -> list[str]:
+        """Return the workspaces of a table whose maps the paper does not print, drawn ones too."""
+        workspaces = {
+            name: self.problems[problem].workspace
+            for problem in self.experiments[table.experiment].problems
+            for name in self.layouts_of(problem, "full")
+        }
+        shown = convert_to_list(table.where.get("problem", [*workspaces]))
+        names = sorted({workspaces[name] for name in shown})
+        return [name for name in names if self.workspaces[name].origin == "reconstructed"]
 
     def own_methods(self, experiment: str, artefact: str) -> list[str]:
         """Return the methods of an experiment that a table or figure shows unless it selects some.

@@ -22,7 +22,8 @@ _LEFT_OUT = ("least_length", "bound_path")
 class Design(NamedTuple):
     """The planned runs of experiments at scale full."""
 
-    experiments: list[str]
+    name: str
+    """The names of the experiments, as messages show them."""
     rows: pd.DataFrame
     """One row for each condition and method, with the columns that are known before a run (repeat
     0).
@@ -109,11 +110,6 @@ class Design(NamedTuple):
         """Return all values of a column that is known before a run."""
         return self.rows[column].dropna().unique().tolist()
 
-    @property
-    def name(self) -> str:
-        """Return the names of the experiments, as messages show them."""
-        return ", ".join(self.experiments)
-
 
 def build_design(study: Study, experiment: str) -> Design:
     """Return the planned runs of an experiment."""
@@ -127,7 +123,7 @@ def build_design(study: Study, experiment: str) -> Design:
     joined = JOINED | (DRIVE_RESULTS | DRIVE_JOINED if moves else reported)
     problems = study.experiments[experiment].problems
     return Design(
-        [experiment],
+        experiment,
         frame,
         {name: each for name, each in joined.items() if name not in _LEFT_OUT}
         | {name: _choose_type(frame[name].dropna().unique()) for name in frame}
@@ -141,7 +137,7 @@ def join_designs(designs: list[Design], without: Iterable[str]) -> Design:
     """Return the planned runs of several experiments, without those of some methods."""
     rows = pd.concat([each.rows for each in designs])
     return Design(
-        [name for each in designs for name in each.experiments],
+        ", ".join(each.name for each in designs),
         rows[~rows["method"].isin([*without])],
         {name: kind for each in designs for name, kind in each.types.items()},
         set().union(*(each.kinds for each in designs)),

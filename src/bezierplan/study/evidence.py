@@ -1,10 +1,9 @@
 """The results of many runs that docs/outcome keeps of a study, and the settings behind them."""
 
 import csv
-import hashlib
 from functools import cache
 
-from bezierplan.machine.digest import compute_content_digest
+from bezierplan.machine.digest import compute_content_digest, hash_text
 from bezierplan.places import OUTCOME, STUDIES
 from bezierplan.study.definition import Study
 
@@ -83,5 +82,4 @@ def list_settings(study: Study) -> list[tuple[str, str, str]]:
 
 def _shorten(text: str) -> str:
     """Return a text, cut if it is long, with a digest of the whole."""
-    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({digest})"
+    return text if len(text) <= _LONG else f"{text[:_LONG]}... ({hash_text(text)})"

@@ -40,6 +40,8 @@ from bezierplan.workspaces.kinds import FileName, Workspace, kinds, of_length
 SCALES = ("smoke", "full", "extended")
 
 Settings = dict[Name, Setting]
+SettingsByPlanner = dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]]
+"""Settings of all planners, and under the name of a planner its own."""
 PART = r"[A-Za-z0-9_.+-]+"
 """The form of a value that is part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
@@ -49,6 +51,7 @@ Scales = Annotated[dict[Literal[SCALES], Count], Field(min_length=len(SCALES))]
 ProblemName = Annotated[
     str, match_text(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
 ]
+Problems = build_list_type(Annotated[ProblemName, Names("problem")])
 Point = Annotated[list[Number], of_length(2, "[x, y]")]
 
 
@@ -133,9 +136,7 @@ class ProblemEntry(Model):
 class Experiment(Model):
     """Problems × varied values × methods × repeats."""
 
-    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
-        description="a list of problems"
-    )
+    problems: Problems = Field(description="a list of problems")
     methods: build_list_type(Annotated[Name, Names("own method")]) = Field(
         description="a list of methods"
     )
@@ -209,7 +210,7 @@ class FamilyEntry(Model):
     """Problems that belong together in the table of methods."""
 
     experiment: ExperimentName = Field(description="one of `experiments`")
-    problems: build_list_type(Annotated[ProblemName, Names("problem")]) = Field(
+    problems: Problems = Field(
         [], description="names of its problems, by default all; not of drawn workspaces"
     )
     straight: Literal["free", "blocked"] = Field(
@@ -275,7 +276,7 @@ class ExperimentsFile(Model):
         "varies one of its settings. "
         "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
-    settings: dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]] = Field(
+    settings: SettingsByPlanner = Field(
         description="settings of all methods. A planner's settings are the keyword-only arguments "
         "of its function `plan`; each "
         "needs a value, there "

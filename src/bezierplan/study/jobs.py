@@ -152,7 +152,7 @@ def group_methods(
     shown = [list_methods(study, name) for name in (*study.find_tables_of_runs(), *study.figures)]
     claims = [claim for claim in study.claims if claim.scale in (None, scale)]
     if experiment in alternatives.list_experiments(claims):
-        shown.append({experiment: list(study.experiments[experiment].methods)})
+        shown.append({experiment: study.experiments[experiment].methods})
     groups: dict[tuple, list[str]] = {}
     for method in methods:
         users = [n for n, by in enumerate(shown) if method in by.get(experiment, ())]
@@ -222,7 +222,7 @@ def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
         labels=build_labels(study, table),
         variants={name: method for name, method in study.variants().items() if name in beside},
         baselines=[name for name in beside if name in study.baselines],
-        reconstructed=study.list_reconstructed_problems(spec),
+        reconstructed=study.list_reconstructed_workspaces(spec),
         fitted=study.fitted.get(spec.extends or table, {}),
         paired=experiment.paired,
         repeats=experiment.repeats[scale],
@@ -371,7 +371,7 @@ def build_audit(study: Study, scale: str) -> Audit:
     return Audit(
         study.key,
         tables,
-        [name for name, table in tables.items() if study.list_reconstructed_problems(table)],
+        [name for name, table in tables.items() if study.list_reconstructed_workspaces(table)],
         sources=study.list_published_files(),
         code=study.code_for("metrics", "audit"),
         shows={name: {} for name in sorted({each.experiment for each in tables.values()})},

@@ -4,12 +4,7 @@ from pathlib import Path
 
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import EVIDENCE, PICTURES, list_files, sort_as_printed
-from bezierplan.figures.page.page_job import (
-    ExperimentView,
-    MethodView,
-    PageJob,
-    StudyView,
-)
+from bezierplan.figures.page.page_job import ExperimentView, MethodView, PageJob, StudyView
 from bezierplan.machine.digest import name_module, read_docstring
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import captions, evidence, jobs

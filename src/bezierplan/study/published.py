@@ -107,11 +107,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 f"a number of at least {low:g}{' and at most 1' * share}, a {row['statistic']} of "
                 f"{metric}",
             ),
-            (
-                "n",
-                re.fullmatch("([1-9][0-9]*)?", row["n"]),
-                "how many runs the paper made",
-            ),
+            ("n", re.fullmatch("([1-9][0-9]*)?", row["n"]), "how many runs the paper made"),
             ("unit", row["unit"] == of_metric, f"{of_metric}, the unit of {row['metric']}"),
         ):
             if not fits:

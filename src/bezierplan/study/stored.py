@@ -11,8 +11,7 @@ from typing import Any
 from bezierplan.analysis.jobs import Job, Verification
 from bezierplan.analysis.outcome.verification import LIST, PAGE
 from bezierplan.places import shorten_path
-from bezierplan.schema import checked
-from bezierplan.schema.checked import check_known
+from bezierplan.schema.checked import Fault, check_known
 from bezierplan.study import alternatives, jobs, loading, page
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
@@ -182,7 +181,7 @@ def read_places(folder: Path, config: dict[str, Any], words: Iterable[str]) -> d
     check_known(folder.resolve().name, SCALES, f"{folder}: scale")
     for key in sorted(keys - words_by_key.keys()):
         if not Path(key, "experiments.yaml").is_file():
-            raise checked.Fault(
+            raise Fault(
                 f"{folder / key}: no study {key} in config/config.yaml or here; say where it lies: "
                 f"--studies FOLDER/{key}"
             )

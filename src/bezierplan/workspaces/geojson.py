@@ -26,7 +26,13 @@ from bezierplan.workspaces.limits import (
     check_numbers,
     check_thickness,
 )
-from bezierplan.workspaces.polygons import Polygons, cross, list_polygons, list_rings_of_polygon
+from bezierplan.workspaces.polygons import (
+    Polygons,
+    build_box,
+    cross,
+    list_polygons,
+    list_rings_of_polygon,
+)
 
 if TYPE_CHECKING:
     import shapely
@@ -60,8 +66,6 @@ def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
     an obstacle that is invalid or too thin for the checker, and gaps that are neither closed nor
     open.
     """
-    import shapely
-
     content = _read_content(text)
     shapes = [
         shape
@@ -75,7 +79,7 @@ def read_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
     borders = [shape for shape in shapes if shape.role == "border"]
     limits, outside = _find_border(borders, obstacles, content.get("bbox"), margin)
     obstacles += outside
-    frame = shapely.box(limits[0], limits[2], limits[1], limits[3])
+    frame = build_box(limits)
     _check_gaps(obstacles, frame)
     kept: list[shapely.Polygon] = []
     for shape in obstacles:

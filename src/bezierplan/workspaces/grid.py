@@ -115,6 +115,32 @@ def embed(occupied: np.ndarray) -> np.ndarray:
     return np.pad(occupied, surplus, constant_values=True)
 
 
+def add_wall(occupied: np.ndarray) -> np.ndarray:
+    """Add a ring of occupied cells, which represents the outside: bool (rows + 2, columns + 2)."""
+    return np.pad(occupied, 1, constant_values=True)
+
+
+def find_occupied_around(cells: np.ndarray) -> np.ndarray:
+    """Return which cells around each inner vertex of cells (rows, columns) are occupied: bool (4,
+    rows - 1, columns - 1).
+
+    In the order below left, below right, above left, above right. With a ring of cells around a
+    grid, vertex [i, j] lies at x = j and y = i, in cells.
+    """
+    return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
+
+
+def find_runs(boundary: np.ndarray) -> np.ndarray:
+    """Find maximal runs of true values in the rows of a bool array.
+
+    Returns (n, 3): row, first column, column after the last.
+    """
+    around = np.pad(boundary, ((0, 0), (1, 1)))
+    # Where a run begins and ends, in turn.
+    row, column = np.nonzero(around[:, 1:] != around[:, :-1])
+    return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
+
+
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """Build a grid from text, top row first: `.` is a free cell, `#` an occupied one.
 

@@ -9,7 +9,6 @@ Lengths, heights and energies are in cells. On a map with few cells all edges ar
 a larger one when they are needed; the numbers are identical to the last bit.
 """
 
-import math
 from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
@@ -18,6 +17,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.trace import trace_back
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square
 # of their number. At this one both tables take 42 MB, and those of the last eight maps are kept.
@@ -176,12 +176,7 @@ def find_cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.nd
     Returns the energy, in cells, and the path's cells; infinite and empty if there is no such path.
     """
     energy, before = _find_cheapest(ground, start, target)
-    if math.isinf(energy):
-        return energy, np.empty(0, np.int64)
-    path = [target]
-    while path[-1] != start:
-        path.append(int(before[path[-1]]))
-    return energy, np.array(path[::-1])
+    return energy, trace_back(before, target, energy)
 
 
 @compile_kernel

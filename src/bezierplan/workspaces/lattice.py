@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import compile_kernel
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import Grid, add_wall
 
 Corners = IntEnum("Corners", {"free": 2, "one": 1, "none": 0})
 """How many of the two cells beside a diagonal step may be occupied."""
@@ -88,7 +88,7 @@ def list_neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
 
     occupied: bool (rows, columns).
     """
-    walled = np.pad(occupied, 1, constant_values=True)
+    walled = add_wall(occupied)
     # The frame spares a test for steps beyond the border.
     row, column = np.argwhere(~occupied).T + 1
     # The two cells next to a step; for a step along an axis these are the cells that it leaves and
@@ -119,8 +119,7 @@ def compute_distances(occupied: np.ndarray, row: int, column: int) -> np.ndarray
     """Return the distance (rows, columns) from a cell to each cell over free cells and their eight
     neighbours, infinite where there is no path.
     """
-    walls = np.pad(occupied, 1, constant_values=True)
-    return _compute_distances(walls, row + 1, column + 1, STEPS)[1:-1, 1:-1]
+    return _compute_distances(add_wall(occupied), row + 1, column + 1, STEPS)[1:-1, 1:-1]
 
 
 @compile_kernel

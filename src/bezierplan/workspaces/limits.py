@@ -84,6 +84,14 @@ def check_thickness(size: float, where: str) -> None:
         raise ValueError(f"{where} {size:g}; expected at least {SMALLEST_FEATURE:g}")
 
 
+def check_count(obstacles: int, circles: int) -> None:
+    """Raise ValueError for more obstacles than a layout has circles."""
+    if obstacles > circles:
+        raise ValueError(
+            f"obstacles: {obstacles}: expected at most {circles}, the circles of a layout"
+        )
+
+
 def check_gaps(gaps: np.ndarray, where: str) -> None:
     """Raise ValueError, beginning with the location, for a gap, in units, that is neither closed
     nor open.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.workspaces.limits import Bounds, check_thickness
+from bezierplan.workspaces.limits import Bounds, check_count, check_thickness
 from bezierplan.workspaces.random_field import draw_centres
 
 if TYPE_CHECKING:
@@ -30,21 +30,23 @@ def circles(
     )
 
 
-def movement(
+def draw_circles(
     rng: np.random.Generator,
     description: dict,
+    problem: dict,
     count: int,
     walls: Bounds,
-    ends: np.ndarray,
     radius: float,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Draw centres and velocities (count, 2) of circles of a radius, from random places in random
-    directions.
+) -> MovingCircles:
+    """Draw circles of a radius that move from random places in random directions, and keep the
+    first `obstacles` of the problem.
 
-    ends: (2, 2).
-
-    Raises ValueError if no free place is found.
+    Raises ValueError for more than there are, and if no free place is found.
     """
-    centres = draw_centres(rng, count, walls, ends, radius + description["clear_ends"])
+    check_count(problem["obstacles"], count)
+    centres = draw_centres(rng, count, walls, problem, radius + description["clear_ends"])
     heading = rng.uniform(0.0, 2 * np.pi, count)
-    return centres, description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])
+    velocities = description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])
+    kept = slice(problem["obstacles"])
+    radii = np.full(count, float(radius))
+    return circles(description, walls, centres[kept], velocities[kept], radii[kept])

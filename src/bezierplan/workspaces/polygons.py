@@ -47,10 +47,15 @@ class Polygons:
 
     def free(self) -> "shapely.Geometry":
         """Return all that is within the border and in no obstacle."""
-        import shapely
+        return build_box(self.bounds).difference(self.union())
 
-        left, right, bottom, top = self.bounds
-        return shapely.box(left, bottom, right, top).difference(self.union())
+
+def build_box(bounds: Bounds) -> "shapely.Polygon":
+    """Build the rectangle of some bounds."""
+    import shapely
+
+    left, right, bottom, top = bounds
+    return shapely.box(left, bottom, right, top)
 
 
 def list_polygons(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
@@ -75,6 +80,11 @@ def list_rings_of_polygon(polygon: "shapely.Polygon") -> tuple[np.ndarray, ...]:
     return tuple(
         shapely.get_coordinates(ring)[:-1] for ring in (polygon.exterior, *polygon.interiors)
     )
+
+
+def list_sides(ring: np.ndarray) -> np.ndarray:
+    """List the sides (n, 4) of an open ring (n, 2), as x, y, x, y."""
+    return np.hstack([ring, np.roll(ring, -1, axis=0)])
 
 
 def normalise(vectors: np.ndarray) -> np.ndarray:

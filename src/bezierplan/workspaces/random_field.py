@@ -43,7 +43,6 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     rng = generator(name, side, *problem["start"], *problem["target"], *count, problem["layout"])
     square = 0.0, side, 0.0, side
     empty = from_circles(Circles(square, np.empty((0, 2)), np.empty(0), description["unit"]))
-    ends = np.array([problem["start"], problem["target"]], float)
     cells = end_cells(empty, problem)
     measure = description.get("radius_side", "own")
     radius = description["radius"] * (side if measure == "own" else measure)
@@ -51,7 +50,7 @@ def field(description: dict, problem: dict, name: str) -> Grid:
         # Each draw of a nested field begins anew, however many numbers the last one took.
         draw = rng.spawn(1)[0] if nested else rng
         centres = draw_centres(
-            draw, problem["obstacles"], square, ends, radius + description["clear_ends"]
+            draw, problem["obstacles"], square, problem, radius + description["clear_ends"]
         )
         radii = np.full(len(centres), radius)
         grid = from_circles(Circles(square, centres, radii, description["unit"]))
@@ -85,14 +84,16 @@ def draw_centres(
     rng: np.random.Generator,
     count: int,
     bounds: Bounds,
-    ends: np.ndarray,
+    problem: dict,
     least: float,
 ) -> np.ndarray:
-    """Draw centres (count, 2) within bounds, none of them closer to an end than the least distance.
+    """Draw centres (count, 2) within bounds, none of them closer to an end of a problem than the
+    least distance.
 
     Raises ValueError if no free place is found.
     """
     low, high = np.reshape(bounds, (2, 2)).T
+    ends = np.array([problem["start"], problem["target"]], float)
     centres = np.empty((count, 2))
     for i in range(count):
         for _ in range(MOST_DRAWS):

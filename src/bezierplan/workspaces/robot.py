@@ -20,11 +20,12 @@ from bezierplan.workspaces import raster
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import Grid, add_wall, find_occupied_around, find_runs
 from bezierplan.workspaces.grown import Growth, find_growth
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, Bounds
 from bezierplan.workspaces.polygons import (
     Polygons,
+    build_box,
     cross,
     list_rings,
     list_rings_of_polygon,
@@ -147,7 +148,7 @@ def _grow_polygons(
     reach = radius - SLACK
     limits = _shrink(bounds, reach)
     outline, centres = _find_outline(shape, reach)
-    inside = shapely.box(limits[0], limits[2], limits[1], limits[3])
+    inside = build_box(limits)
     if inside.difference(outline).area == 0:
         raise _describe_nothing_free(radius)
     # A part beyond the shrunken border blocks nothing.
@@ -230,15 +231,14 @@ def _join_cells(grid: Grid) -> "shapely.Geometry | None":
     import shapely
 
     cells = np.pad(grid.occupied, 1)
-    around = np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]]).sum(axis=0)
+    around = find_occupied_around(cells).sum(axis=0)
     diagonal = (around == 2) & (cells[:-1, :-1] == cells[1:, 1:])
     if ((around % 2 == 1) | diagonal).sum() > MOST_CORNERS:
         return None
     # A rectangle for each run of cells in a row: there are far fewer of them than cells.
-    row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
-    _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
+    row, begin, end = find_runs(grid.occupied).T
     # Whole numbers: exact.
-    whole = shapely.simplify(shapely.union_all(shapely.box(column, row, end, row + 1)), 0)
+    whole = shapely.simplify(shapely.union_all(shapely.box(begin, row, end, row + 1)), 0)
     return shapely.transform(whole, grid.in_units)
 
 
@@ -248,7 +248,7 @@ def by_cells(grid: Grid, radius: float) -> Grid:
     """
     from scipy.ndimage import binary_dilation, distance_transform_edt
 
-    walled = np.pad(grid.occupied, 1, constant_values=True)
+    walled = add_wall(grid.occupied)
     # Two squares are as far apart as their centres would be if one of them were a cell nearer in
     # both directions.
     touching = binary_dilation(walled, np.ones((3, 3), bool))

@@ -156,7 +156,10 @@ def describe_paths(identification: Identification) -> str:
     ]
     more = len(paths) - len(shown)
     shown += [f"{more} others"] if more else []
-    return f"{' or '.join(shown) or 'no such path'}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
+    return (
+        f"{' or '.join(shown) or 'no such path'}; of the numbers nearby, "
+        f"{100 * identification.chance:.2g} % match by chance"
+    )
 
 
 def check_declared_paths(

@@ -3,7 +3,6 @@
 A check is an instance of the `Options` of its kind (`kinds`).
 """
 
-import itertools
 import math
 from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -39,7 +38,6 @@ Group = Annotated[
         "a value of the column `across`, or rest",
     ),
 ]
-Groups = build_list_type(Group)
 Columns = build_list_type(Column)
 
 
@@ -53,22 +51,40 @@ class PublishedMargin(Model):
     )
 
 
-# Descriptions of keys shared by several kinds of check.
-EXPERIMENT = "the name of an experiment, or a list of at least two"
-WORK = (
-    "the metric of counted work that is judged instead of seconds, which differ from machine "
-    "to machine and are only reported"
-)
+# Types of keys shared by several kinds of check, with their descriptions.
+Experiments = Annotated[
+    build_list_type(Experiment, least=2, single=True),
+    Field(description="the name of an experiment, or a list of at least two"),
+]
+Work = Annotated[
+    Metric,
+    Field(
+        description="the metric of counted work that is judged instead of seconds, which differ "
+        "from machine to machine and are only reported"
+    ),
+]
+Groups = Annotated[
+    build_list_type(Group),
+    Field(
+        description="a list of values of the column `across`; [rest] names the artefact's groups "
+        "that are not named"
+    ),
+]
+Than = Annotated[
+    build_list_type(Group),
+    Field(
+        description="a list of what the groups are compared with, each with each, such as [rest]"
+    ),
+]
+Failures = Annotated[
+    Literal["drop", "last", "count"],
+    Field(
+        description="what a run without a feasible path counts: drop (left out: this), last (worse "
+        "than any success; also runs that do not satisfy a condition on an outcome) or count (the "
+        "event is false)"
+    ),
+]
 POOL = "a list of columns whose values are averaged with equal weight"
-GROUPS = (
-    "a list of values of the column `across`; [rest] names the artefact's groups that are not named"
-)
-THAN = "a list of what the groups are compared with, each with each, such as [rest]"
-FAILURES = (
-    "what a run without a feasible path counts: drop (left out: this), last (worse than any "
-    "success; also runs that do not satisfy a "
-    "condition on an outcome) or count (the event is false)"
-)
 
 # Keys that hold groups: lists of them, and lists of such lists.
 GROUP_KEYS = ("groups", "than", "pairs", "order")
@@ -137,8 +153,12 @@ class ClaimCheck(Model):
     @property
     def groups_named(self) -> list:
         """Return all groups that the check names."""
-        lists = [convert_to_list(each) for key in GROUP_KEYS for each in getattr(self, key) or []]
-        return list(itertools.chain.from_iterable(lists))
+        return [
+            group
+            for key in GROUP_KEYS
+            for each in getattr(self, key) or []
+            for group in convert_to_list(each)
+        ]
 
 
 def refuse_same_group(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
@@ -156,7 +176,7 @@ class OfRuns(ClaimCheck):
 
     reference: ClassVar[int] = 0
 
-    experiment: build_list_type(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
+    experiment: Experiments
     metric: Metric = Field(description="the name of a metric")
     where: Where = Field(
         {},

@@ -275,7 +275,7 @@ def _name_quantity(row: Row) -> str:
     return f"{measured} ({statistic})" if statistic and statistic != "rank" else measured
 
 
-def describe_metric(metric: str) -> str:
+def describe_metric(metric: str | None) -> str:
     """Describe a metric in a phrase; empty if it is not one of the metrics of runs."""
     return METRICS[metric].meaning if metric in METRICS else ""
 

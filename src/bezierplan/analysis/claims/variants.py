@@ -3,7 +3,7 @@
 import itertools
 from typing import Any
 
-from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck, OfRuns
+from bezierplan.analysis.claims.check import GROUP_KEYS, ClaimCheck
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import convert_to_list
 
@@ -77,6 +77,6 @@ def split_work(check: ClaimCheck) -> list[ClaimCheck]:
     """Split a check of seconds that names counted work into a primary check of the work and a
     secondary one of the seconds; any other check stays alone.
     """
-    if not isinstance(check, OfRuns) or check.work is None:
+    if check.work is None:
         return [check]
     return [check.use_work(), check.but(secondary=True)]

@@ -94,32 +94,19 @@ def judge_marks(alone: Sequence[str], together: Sequence[str], holds: str) -> st
     holds: whether `all` comparisons have to hold, `any`, or all `together` as one sentence.
     """
     marks = set(together)
-    if holds == "together":
-        return _judge_as_one(set(alone), marks)
     if set(alone) == {"+"} or (holds == "any" and "+" in marks):
         return "supported"
-    if holds == "any":
-        return (
-            "contradicted" if set(alone) == {"-"} else "undecided" if "?" in marks else "no effect"
-        )
+    if holds == "together":
+        # It fails as soon as one comparison does: the best of eight is better than each other one.
+        if "-" in marks or marks >= {"0", "+"}:
+            return "contradicted"
+        return "no effect" if "0" in marks else "undecided"
     if "+" in marks:
         return _judge_partly(together)
-    if "-" in marks:
+    fails = set(alone) == {"-"} if holds == "any" else "-" in marks
+    if fails:
         return "contradicted"
     return "undecided" if "?" in marks else "no effect"
-
-
-def _judge_as_one(alone: set[str], together: set[str]) -> str:
-    """Judge a sentence that fails as soon as one of its comparisons does: the best of eight is
-    better than each of the others.
-    """
-    if alone == {"+"}:
-        return "supported"
-    if "-" in together:
-        return "contradicted"
-    if "0" in together:
-        return "contradicted" if "+" in together else "no effect"
-    return "undecided"
 
 
 def _judge_partly(marks: Sequence[str]) -> str:

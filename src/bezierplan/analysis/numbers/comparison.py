@@ -89,7 +89,8 @@ def compare(
     published: as from `read_published`. variant_of: method -> the method whose published numbers it
     is compared with. baselines: methods without a published number. Variants of the table's methods
     and baselines get rows, whether or not the table shows them. name: `study/table`, which seeds
-    each row's random draws. reconstructed, fitted: as in `find_reasons`.
+    each row's random draws. reconstructed: workspaces that the paper does not print. fitted: as in
+    `find_reasons`.
     """
     key_columns = list_key_columns(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
@@ -122,7 +123,8 @@ def compare(
     )
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
-    table["reason"] = find_reasons(both, spec, reconstructed, fitted)
+    redrawn = results.runs.loc[results.runs["workspace"].isin(reconstructed), "problem"].unique()
+    table["reason"] = find_reasons(both, spec, redrawn, fitted)
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
@@ -133,13 +135,13 @@ def compare(
 
 
 def find_reasons(
-    numbers: pd.DataFrame, spec: Pivot, reconstructed: Collection[str], fitted: dict[str, dict]
+    numbers: pd.DataFrame, spec: Pivot, redrawn: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
     """Find the reason why each number of a table proves nothing of the paper, wherever it lies;
     empty if it may prove something.
 
-    Our definition or our map may be wrong, or something was fitted to the number. reconstructed:
-    problems on maps that the paper does not print. fitted: metric -> which numbers of the table are
+    Our definition or our map may be wrong, or something was fitted to the number. redrawn: problems
+    on maps that the paper does not print. fitted: metric -> which numbers of the table are
     such (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
@@ -147,8 +149,8 @@ def find_reasons(
     was_fitted = pd.Series(False, numbers.index)
     for metric, where in fitted.items():
         was_fitted |= printed.index.isin(select(printed, where | {"metric": metric}).index)
-    redrawn = numbers["by_run"].map(
-        lambda runs: not runs.index.unique("problem").intersection([*reconstructed]).empty,
+    on_redrawn = numbers["by_run"].map(
+        lambda runs: not runs.index.unique("problem").intersection([*redrawn]).empty,
         na_action="ignore",
     )
     reason_of = pd.Series("", numbers.index)
@@ -156,7 +158,7 @@ def find_reasons(
     for reason, whose in (
         (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
-        (NO_MAP, redrawn.eq(True)),
+        (NO_MAP, on_redrawn.eq(True)),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
         reason_of = reason_of.mask(whose, reason)

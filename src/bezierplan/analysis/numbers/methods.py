@@ -54,7 +54,6 @@ def _measure_methods(
         straight = bound <= math.dist(problem.start, problem.target) * (1 + _STRAIGHT)
         own = (key for key, each in families.items() if each.has(experiment, name, straight))
         family = next(own, "")
-        names = {"experiment": experiment, "family": family, "problem": name}
         for method, of_method in of_problem.groupby("method", sort=False):
             free = of_method[of_method["free"]]
             smooth = free[free["corners"] == 0]
@@ -62,7 +61,9 @@ def _measure_methods(
             draws = generator(f"methods/{experiment}/{name}/{method}")
             low, high = statistics.compute_interval("median", excess, draws)
             yield {
-                **names,
+                "experiment": experiment,
+                "family": family,
+                "problem": name,
                 "method": method,
                 "straight": straight,
                 "runs": len(of_method),

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, naming, statistics
 from bezierplan.analysis.audit import possible
 from bezierplan.analysis.results import Results, is_repeated, select
 from bezierplan.analysis.table_kinds import Pivot
@@ -35,9 +35,7 @@ def order_keys(table: pd.DataFrame, spec: Pivot, problems: Iterable[str]) -> pd.
     }
     ordered = {}
     for key in table.columns.intersection([*spec.key_columns, *orders]):
-        first = orders.get(key, [])
-        present = table[key].dropna().unique().tolist()
-        present = [value for value in first if value in present] + sorted(set(present) - set(first))
+        present = naming.list_in_order(table[key], orders)
         ordered[key] = pd.Categorical(table[key], categories=present, ordered=True)
     return table.assign(**ordered)
 
@@ -254,7 +252,7 @@ def _list_levels(spec: Pivot) -> tuple[list[str], list[str]]:
     """List the levels of the index and of the columns, including necessary words that were left
     out.
     """
-    index, columns = list(spec.index), list(spec.columns)
+    index, columns = spec.index, [*spec.columns]
     if "statistic" not in index + columns and any(
         len(entry.statistics) > 1 for entry in spec.values
     ):

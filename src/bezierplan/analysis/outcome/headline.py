@@ -26,7 +26,7 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     )
     if vague := len(numbers) - len(told):
         text += (
-            f" The other {vague} it cannot test: it also holds at least half of the paper's other "
+            f" For the other {vague} it is so wide that it holds at least half of the paper's "
             "numbers of the same kind."
         )
     reasons = told["reason"].fillna("")
@@ -35,8 +35,9 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         counts = reasons[reasons != ""].value_counts()
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
-            f" {len(told) - len(worth)} of the {len(told)} prove nothing of the paper ({why}); of "
-            f"the other {len(worth)}, {int((worth['position'] == 'inside').sum())} lie inside."
+            f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing of the "
+            f"paper ({why}). Only {len(worth)} can, and {(worth['position'] == 'inside').sum()} of "
+            "these lie inside."
         )
     return text
 

@@ -13,9 +13,7 @@ from bezierplan.schema import checked
 from bezierplan.schema.model import Model, build_error, parse
 
 COMPARISONS = {"equals": operator.eq, "above": operator.gt, "below": operator.lt}
-TABLES = (
-    *("numbers", "claims", "claim_checks", "claims_by_reading", "methods", "audit", "settings"),
-)
+TABLES = ("numbers", "claims", "claim_checks", "claims_by_reading", "methods", "audit", "settings")
 
 
 class Fact(Model):

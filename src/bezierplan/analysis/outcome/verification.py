@@ -43,9 +43,9 @@ class FileList(NamedTuple):
     empty, or the line that says what is wrong with the list.
     """
 
-    digests: dict[str, str]
-    accounts: dict[str, dict[str, str]]
-    versions: dict[str, str]
+    digests: Mapping[str, str] = {}
+    accounts: Mapping[str, Mapping[str, str]] = {}
+    versions: Mapping[str, str] = {}
     fault: str = ""
 
 
@@ -54,13 +54,13 @@ def read_list(folder: Path) -> FileList:
     file, page = folder / LIST, folder / PAGE
     text = page.read_text(encoding="utf-8") if page.is_file() else ""
     if not file.is_file():
-        return FileList({}, {}, {}, "is not there, though a page is" if text else "")
+        return FileList(fault="is not there, though a page is" if text else "")
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         accounts = {name: account for files, account in content["accounts"] for name in files}
         found = FileList(dict(content["sha256"]), accounts, dict(content["versions"]))
     except (KeyError, TypeError, ValueError):
-        return FileList({}, {}, {}, "not a list of digests")
+        return FileList(fault="not a list of digests")
     # The page holds the digest of its list, so a list of another page is told.
     if text and compute_sha256(file) not in text:
         return found._replace(fault=f"not the list that {PAGE} names")

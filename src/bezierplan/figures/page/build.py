@@ -162,7 +162,7 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "marks": MARKS,
         "picture": lambda name: base64.b64encode(Path(PICTURES[name]).read_bytes()).decode(),
         "root": "",  # before the paths of files of results
-        "meaning": lambda metric: describe_metric(metric or ""),
+        "meaning": describe_metric,
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": read_size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),

@@ -285,9 +285,10 @@ def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame])
     claims = []
     for row in rows:
         if row["primary"]:
-            same = [each for each in rows if each["id"] == row["id"] and not each["primary"]]
             others = [
-                each | {"variant": names.get(each["variant"], each["variant"])} for each in same
+                each | {"variant": names.get(each["variant"], each["variant"])}
+                for each in rows
+                if each["id"] == row["id"] and not each["primary"]
             ]
             place = row["id"], row["variant"]
             own = [check for check in checks if (check["id"], check["variant"]) == place]

@@ -41,7 +41,8 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     """Return one row per sample of a path, uniform in its parameter.
 
     Columns of `paths.choose_run` come first, then limit, pieces (of the path), t (0 to 1), value:
-    the curvature with its sign, left turns positive, in 1/unit; empty where the speed is zero. If there is no path, one row has neither t nor value.
+    the curvature with its sign, left turns positive, in 1/unit; empty where the speed is zero. If
+    there is no path, one row has neither t nor value.
 
     Raises ValueError unless all runs are of one problem and one method.
     """

@@ -87,7 +87,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     places = _name_rows(axes, frame)
     band = {"facecolor": "0.92", "linewidth": 0, "zorder": 0, "label": "95 % interval by default"}
     axes.axvspan(default["low95"], default["high95"], **band)
-    is_share = default["relation"].startswith("in")
+    # A claim that few runs leave untestable has none.
+    is_share = str(default["relation"]).startswith("in")
     label = "share that the claim needs" if is_share else "no difference"
     needed = _SHARES.get(default["other"], default["other"]) if is_share else 0.0
     axes.axvline(float(needed), **style.BOUND, label=label)

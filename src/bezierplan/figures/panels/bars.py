@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field
 
+from bezierplan.analysis.naming import list_in_order
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     compute_summary,
@@ -74,7 +75,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in the order of the panel's `where`."""
     x, hue, labels = options.x, options.hue, scene.labels
-    places = style.list_in_order(frame[x], options.where)
+    places = list_in_order(frame[x], options.where)
     names = [labels.get(at, at) if isinstance(at, str) else f"{at:g}" for at in places]
     groups = style.list_groups(frame, hue, options, scene)
     width = _WIDTH / len(groups)

@@ -10,7 +10,6 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import naming
-from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import (
     LIMITS,
@@ -111,7 +110,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     import seaborn as sns
 
     by = options.by
-    order = style.list_in_order(frame[by], options.where)
+    order = naming.list_in_order(frame[by], options.where)
     look = {"color": style.LIGHT_BLUE, "linecolor": style.BLUE, "linewidth": 0.7, "width": 0.6}
     box = frame[frame["part"].isin(_BOX)]
     # The rows are the five numbers of each box: of these seaborn must find no outliers (`whis`).
@@ -123,7 +122,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         if part in LIMITS:
             axes.axhline(own.iloc[0], zorder=1.5, **LIMITS[part])
     if options.limit is not None:
-        label = f"published limit: {format_amount(format(options.limit, 'g'), scene.unit)}"
+        label = f"published limit: {naming.format_amount(format(options.limit, 'g'), scene.unit)}"
         axes.axhline(options.limit, zorder=1.5, label=label, **style.PUBLISHED)
     names = [naming.format_value(group, by, scene.labels) for group in order]
     style.name_places(axes, names, describe_axis(by, scene))

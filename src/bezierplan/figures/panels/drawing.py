@@ -70,7 +70,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if not alone:
         workspaces.draw_workspace(axes, scene.workspaces[options.workspace])
     # Groups of neighbouring rows, so that later rows of the table lie on top.
-    names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
+    roles, groups = (frame[name].astype("string").fillna("") for name in ("role", "group"))
+    names = frame["mark"] + " " + roles + " " + groups
     changed = (names != names.shift()).cumsum()
     for level, (_, own) in enumerate(frame.groupby(changed, sort=True)):
         _draw_marks(axes, own, 3 + level / 1000)

@@ -51,8 +51,6 @@ _TICKS = (0, 0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1,
 # factor; and its ticks are at least this share of it apart.
 _EDGE, _LEAST_SPAN, _APART = 1.6, 5.0, 0.15
 
-_ENDS = [f"{axis}{end}" for axis in "xy" for end in ("", "_low", "_high")]
-
 # Where a text stands beside its mark, in points.
 _BESIDE = (5, 5)
 
@@ -89,16 +87,15 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     problems = {name: results.problems[name] for name in bounds.index} if of_bend else {}
     lines = _compute_lines(problems, bounds)
     rows: list[Row] = [
-        {"part": "line", "radius": radius}
-        | _compute_medians(own[["x", "y"]].to_numpy(), f"{radius}")
+        {"part": "line", "radius": radius} | _compute_medians(own, f"{radius}")
         for radius, own in lines.groupby("radius")
     ]
     for method, of_method in runs.groupby("method"):
         places = {
-            name: _compute_medians(few[["x", "y"]].to_numpy(), f"{options.x}/{name}/{method}")
+            name: _compute_medians(few, f"{options.x}/{name}/{method}")
             for name, few in of_method.groupby("problem")
         }
-        medians = np.array([[place["x"], place["y"]] for place in places.values()])
+        medians = pd.DataFrame(places.values())
         first, *others = places.values()
         row = {
             "part": "method",
@@ -192,15 +189,15 @@ def _round_shortest_path(problem: Problem, bound: float, radius: float) -> tuple
     return bend, plan.objective / bound - 1
 
 
-def _compute_medians(points: np.ndarray, name: str) -> dict[str, float]:
-    """Return medians of points (n, 2) with their intervals.
+def _compute_medians(points: pd.DataFrame, name: str) -> dict[str, float]:
+    """Return medians of points, rows with x and y, with their intervals.
 
     Points that bend without limit are left out unless all do.
     """
-    bounded = points[np.isfinite(points[:, 0])]
+    bounded = points[np.isfinite(points["x"])]
     middle_of = {}
-    for axis, values in zip("xy", (bounded if len(bounded) else points).T):
-        numbers = np.sort(values[~np.isnan(values)])
+    for axis in "xy":
+        numbers = np.sort((points if bounded.empty else bounded)[axis].dropna())
         middle = middle_of[axis] = statistics.compute_statistic("median", numbers)
         ends = middle, middle
         if len(numbers) > 1 and math.isfinite(middle):
@@ -252,7 +249,7 @@ def _scale_axes(
 
 def _draw_method(axes: Axes, row: pd.Series, look: dict[str, Any]) -> None:
     """Draw the mark of a method, with intervals and the share of free paths beside it."""
-    x, x_low, x_high, y, y_low, y_high = row[_ENDS]
+    x, x_low, x_high, y, y_low, y_high = row[["x", "x_low", "x_high", "y", "y_low", "y_high"]]
     axes.plot([], [], **look)
     hollow = {"label": None}
     if row["free"] < _OFTEN_FREE:

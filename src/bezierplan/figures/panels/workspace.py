@@ -152,9 +152,8 @@ def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     import pandas as pd
 
     if isinstance(workspace, Circles):
-        number = range(len(workspace.radii))
         circles = list_points({"circle": workspace.centres})
-        return circles.assign(size=workspace.radii, obstacle=number)
+        return circles.assign(size=workspace.radii, obstacle=range(len(circles)))
     rings = [
         list_points({"ring": points}).assign(obstacle=obstacle, ring=ring)
         for obstacle, outline in enumerate(workspace.obstacles)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import compile_kernel
+from bezierplan.workspaces.trace import trace_back
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -77,18 +77,5 @@ def dijkstra_path(graph: "csr_array") -> np.ndarray:
     from scipy.sparse.csgraph import dijkstra
 
     distances, predecessors = dijkstra(graph, directed=False, indices=0, return_predecessors=True)
-    if math.isinf(distances[1]):
-        return np.empty(0, np.int64)
-    nodes = [1]
-    while nodes[-1] != 0:
-        nodes.append(int(predecessors[nodes[-1]]))
-    return np.array(nodes[::-1])
-
-
-@compile_kernel
-def trace_back(before, length):
-    """Return the nodes from 0 to 1, from each one's predecessor; none if the length is infinite."""
-    nodes = [1]
-    while before[nodes[-1]] >= 0:
-        nodes.append(before[nodes[-1]])
-    return np.array(nodes[::-1]) if length < np.inf else np.empty(0, np.int64)
+    # As whole numbers of the kernels that use it, too: for others it would compile once more.
+    return trace_back(predecessors.astype(np.int64), 1, distances[1])

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezierplan.geometry.region import GridRegion, add_wall, find_occupied_around, from_origin
+from bezierplan.geometry.region import GridRegion, from_origin
 from bezierplan.geometry.shortest_paths import shadows
 from bezierplan.geometry.shortest_paths.graph import (
     Bound,
@@ -15,7 +15,7 @@ from bezierplan.geometry.shortest_paths.graph import (
     shortest_in_graph,
 )
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import Grid, add_wall, find_occupied_around
 from bezierplan.workspaces.problem import Problem
 
 # A graph of cell centres has an entry for every pair of nodes; it may have this many.

@@ -6,6 +6,7 @@ import numpy as np
 
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
 from bezierplan.kernels import compile_kernel
+from bezierplan.workspaces.grid import add_wall
 from bezierplan.workspaces.lattice import STEPS, Corners
 
 
@@ -36,7 +37,7 @@ def lattice_path(
     if occupied[start] or occupied[target]:
         return no_path()
 
-    walled_cells = np.pad(occupied, 1, constant_values=True)
+    walled_cells = add_wall(occupied)
     length, cells = _find_least_cells(
         walled_cells,
         np.array(start) + 1,

@@ -9,9 +9,10 @@ from bezierplan.geometry.bins import Bins, columns_between, list_members, rows_b
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
 from bezierplan.geometry.checker.hulls import measure_distance
 from bezierplan.geometry.region import PolygonRegion
-from bezierplan.geometry.shortest_paths.graph import Bound, follow_nodes, trace_back
+from bezierplan.geometry.shortest_paths.graph import Bound, follow_nodes
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.trace import trace_back
 
 
 def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
@@ -62,7 +63,7 @@ def _search(nodes, before, after, region):
         settled[i] = True
         came_by[i] = tail
         if i == 1:
-            return trace_back(came_by, length)
+            return trace_back(came_by, 1, length)
         turn = _turn_at(nodes, tail, i, before, after)
         for j in range(len(nodes)):
             if settled[j]:

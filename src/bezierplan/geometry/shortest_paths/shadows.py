@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import find_occupied_around, find_runs
-from bezierplan.geometry.shortest_paths.graph import trace_back
 from bezierplan.kernels import allocation_free, compile_kernel
+from bezierplan.workspaces.grid import find_occupied_around, find_runs
+from bezierplan.workspaces.trace import trace_back
 
 
 class Scene(NamedTuple):
@@ -86,7 +86,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
             continue
         settled[i] = True
         if i == 1:
-            return trace_back(came_by, length[1])
+            return trace_back(came_by, 1, length[1])
         count = (
             _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, view)
             if i

@@ -27,17 +27,17 @@ if TYPE_CHECKING:
 CLASS_SAMPLES = 2001
 
 
-def compute_homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
-    """Return on which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k
-    = 0, 1, ... that it leaves to its left.
+def compute_homotopy_class(path: Path, workspace: Workspace) -> float:
+    """Return on which side a polyline passes each circle: the sum of 2^k over the circles k = 0, 1,
+    ... that it leaves to its left.
 
     A circle lies to the left if the angle swept by the polyline about its centre is positive. This
     distinguishes classes if no polyline winds round a circle and all have the same ends. NaN
     without points or in a workspace of another kind.
     """
-    if not len(points) or not isinstance(workspace, Circles):
+    if not len(path.points) or not isinstance(workspace, Circles):
         return np.nan
-    x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
+    x, y = np.ascontiguousarray(path.points.T)[:, None] - workspace.centres.T[:, :, None]
     angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
     # Where the polyline crosses the ray to the left of the centre, its angle jumps from pi to -pi,
     # or back.
@@ -58,7 +58,8 @@ def compute_homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
 )
 def homotopy(path: Path, workspace: Workspace) -> float:
     """Return the homotopy class of a path (`compute_homotopy_class`)."""
-    return compute_homotopy_class(sample_path(path, CLASS_SAMPLES), workspace)
+    line = path._replace(points=sample_path(path, CLASS_SAMPLES))
+    return compute_homotopy_class(line, workspace)
 
 
 @metric(
@@ -72,9 +73,7 @@ def best_corridor(runs: pd.DataFrame, problems: Problems) -> np.ndarray:
     without circles.
     """
     shortest = runs.assign(path_curve="polyline", path_points=runs["bound_path"])
-    best = measure_on_maps(
-        lambda path, workspace: compute_homotopy_class(path.points, workspace), shortest, problems
-    )
+    best = measure_on_maps(compute_homotopy_class, shortest, problems)
     found = np.equal(measure_on_maps(homotopy, runs, problems), best)
     return np.where(np.isnan(best), np.nan, runs["feasible"] & found)
 

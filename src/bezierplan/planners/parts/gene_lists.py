@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners.parts.diversity import compute_q_statistic, count_shared
+from bezierplan.planners.parts.diversity import compute_q_statistic
 from bezierplan.planners.parts.genetic import is_same
 from bezierplan.planners.parts.sorting import sort
 
@@ -128,12 +128,11 @@ def cross(pool: Pool, head: int, tail: int, cut: int, index: np.ndarray, child: 
 
 
 @allocation_free
-def compute_q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
-    """Return the Q statistic of the lists of two chromosomes of `genes` genes."""
-    both = count_shared(one, other)
-    return compute_q_statistic(
-        both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both
-    )
+def compute_q(both: int, one: int, other: int, genes: int) -> float:
+    """Return the Q statistic of two chromosomes of `genes` genes: numbers of those that are 1 in
+    both, in one and in the other.
+    """
+    return compute_q_statistic(both, genes - one - other + both, one - both, other - both)
 
 
 class Kinds(NamedTuple):
@@ -205,10 +204,7 @@ def _add_kind(pool, place, kind, kinds):
         head, both = kinds.head[other], 0
         for k in range(pool.count[head]):
             both += kinds.marks[pool.ones[head, k]]
-        only_one, only_other = len(ones) - both, pool.count[head] - both
-        kinds.q[kind, other] = compute_q_statistic(
-            both, genes - both - only_one - only_other, only_one, only_other
-        )
+        kinds.q[kind, other] = compute_q(both, len(ones), pool.count[head], genes)
     for gene in ones:
         kinds.marks[gene] = 0
 

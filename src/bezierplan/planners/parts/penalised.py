@@ -9,18 +9,15 @@ border is no obstacle: the swarm's own bounds keep the control points inside.
 
 from enum import IntEnum
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, list_rings_of_polygon, list_sides
 from bezierplan.workspaces.problem import Workspace
-
-if TYPE_CHECKING:
-    from shapely import LinearRing
 
 Penalty = IntEnum("Penalty", "multiply add death", start=0)
 
@@ -176,10 +173,7 @@ def grow_polygons(workspace: Workspace, d_min: float) -> Polygonal:
     import shapely
 
     shapes = [shapely.Polygon(outer, holes).buffer(d_min) for outer, *holes in workspace.obstacles]
-    edges = [
-        np.concatenate([_list_sides(ring) for ring in (shape.exterior, *shape.interiors)])
-        for shape in shapes
-    ]
+    edges = [np.concatenate([*map(list_sides, list_rings_of_polygon(shape))]) for shape in shapes]
     return Polygonal(
         edges=np.concatenate(edges),
         first=np.concatenate([[0], np.cumsum([len(each) for each in edges])]),
@@ -188,12 +182,6 @@ def grow_polygons(workspace: Workspace, d_min: float) -> Polygonal:
         # GEOS gives that circle as the line from its centre to the nearest point of the edge.
         deepest=np.array([shapely.maximum_inscribed_circle(shape).length for shape in shapes]),
     )
-
-
-def _list_sides(ring: "LinearRing") -> np.ndarray:
-    """List the sides (n, 4) of a ring."""
-    corners = np.array(ring.coords)
-    return np.hstack([corners[:-1], corners[1:]])
 
 
 @allocation_free

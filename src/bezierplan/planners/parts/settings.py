@@ -210,14 +210,10 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
         kept = list(signature.parameters.values())
         # The tuples stand behind `problem` and `rng`.
         del kept[2 : 2 + len(classes)]
-        names = {
-            name: annotation
+        keywords = [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=annotation)
             for each in classes
             for name, annotation in each.__annotations__.items()
-        }
-        keywords = [
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name])
-            for name in names
         ]
         call_by_name.__signature__ = signature.replace(parameters=[*kept, *keywords])
         told = [

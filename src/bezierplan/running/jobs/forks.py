@@ -87,11 +87,15 @@ class Forks:
         jobs then count as that of this process's children.
         """
         with self._starting:
-            if self._control is not None:
-                self._control.close()
-                self._process.kill()
-                self._process.wait()
-                self._control = None
+            self._stop()
+
+    def _stop(self) -> None:
+        """End the process that is forked, if it is there."""
+        if self._control is not None:
+            self._control.close()
+            self._process.kill()
+            self._process.wait()
+            self._control = None
 
     def script(self, *arguments: Any) -> None:
         """Run a script as Snakemake's function of the same name does, with the same arguments.
@@ -163,6 +167,7 @@ class Forks:
             with contextlib.suppress(ConnectionError):
                 socket.send_fds(self._control, [ARRIVES], [job.fileno()])
                 return
+        self._stop()
         self._begin()
         socket.send_fds(self._control, [ARRIVES], [job.fileno()])
 

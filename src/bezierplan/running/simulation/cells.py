@@ -138,18 +138,14 @@ def find_way_to_start(
     If that place is occupied, they lead back along the motion to a free one; if there is none, only
     the end of the motion is returned.
     """
-    robot = motion.points[-1]
-    begin = _find_start(grid, robot, start)
-    if begin is not None:
-        return np.array([robot, begin])
     back = motion.points[::-1]
     lengths = ways.measure_lengths(back)
-    for s in np.arange(_BACK, lengths[-1], _BACK):
+    for s in itertools.chain([0.0], np.arange(_BACK, lengths[-1], _BACK)):
         robot = Way(back, lengths).place(s)
         begin = _find_start(grid, robot, start)
         if begin is not None:
             return np.concatenate([back[lengths < s], [robot, begin]])
-    return motion.points[-1:]
+    return back[:1]
 
 
 def bound_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker, curves
+from bezierplan.geometry.arc_length import find_places, measure_lengths
 from bezierplan.geometry.region import Region, from_origin, is_blocked
 from bezierplan.workspaces.problem import Path
 
@@ -33,14 +34,6 @@ class Way(NamedTuple):
         return find_places(self.points, self.at, s)
 
 
-def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
-    """Return places (..., 2), at some values, of what moves straight from point to point (n, 2).
-
-    at: (n,) the value at each point.
-    """
-    return np.stack([np.interp(values, at, points[:, axis]) for axis in range(2)], axis=-1)
-
-
 def cut(
     points: np.ndarray, at: np.ndarray, begin: float, end: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -58,11 +51,6 @@ def build_way(points: np.ndarray) -> Way:
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
     return Way(points, measure_lengths(points))
-
-
-def measure_lengths(points: np.ndarray) -> np.ndarray:
-    """Return the length (n,) of a polyline (n, 2) up to each of its points."""
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
 def build_polyline(path: Path, spacing: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.schema.model import NotNegative, build_value_type, is_number
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
-from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of
+from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of, check_count
 from bezierplan.workspaces.random_field import draw_centres
 from bezierplan.workspaces.seeds import generator
 
@@ -58,19 +58,15 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     (5, True)
     """
     count = problem["obstacles"]
-    if count > description["circles"]:
-        raise ValueError(
-            f"obstacles: {count}: expected at most {description['circles']}, the circles of a "
-            "layout"
-        )
+    check_count(count, description["circles"])
     # Neither the number of circles nor the ends are part of the seed.
     rng = generator(name, problem["layout"])
-    bounds, ends = bounds_of(description["bounds"]), np.array([problem["start"], problem["target"]])
+    bounds = bounds_of(description["bounds"])
     given, gap = description["radius"], description.get("gap", 0)
     centres, radii = [], []
     for _ in range(count):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
         # A larger circle needs a wider gap, so its radius comes first.
-        centres.append(draw_centres(rng, 1, bounds, ends, radius + gap)[0])
+        centres.append(draw_centres(rng, 1, bounds, problem, radius + gap)[0])
         radii.append(radius)
     return Circles(bounds, np.reshape(centres, (-1, 2)), np.array(radii), description["unit"])

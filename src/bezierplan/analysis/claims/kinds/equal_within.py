@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import GROUPS, THAN, Comparing, Groups, refuse_same_group
+from bezierplan.analysis.claims.check import Comparing, Groups, Than, refuse_same_group
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.schema.model import Number
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    groups: Groups = Field(description=GROUPS)
-    than: Groups = Field(description=THAN)
+    groups: Groups
+    than: Than
     statistic: Literal["mean", "median", "min", "max"] = Field(
         description="the statistic that is compared: mean, median, min or max"
     )

@@ -11,20 +11,11 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from bezierplan.analysis.claims.check import EXPERIMENT, ClaimCheck
+from bezierplan.analysis.claims import check
 from bezierplan.analysis.claims.effects import Finding, Terms
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, describe_known
-from bezierplan.schema.model import (
-    ARGUMENTS,
-    Arguments,
-    Experiment,
-    Function,
-    Line,
-    Metric,
-    Where,
-    build_list_type,
-)
+from bezierplan.schema.model import ARGUMENTS, Arguments, Function, Line, Metric, Where
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,14 +28,12 @@ if TYPE_CHECKING:
     FunctionResult = tuple[str, float, tuple[float, float] | None, int]
 
 
-class Options(ClaimCheck):
+class Options(check.ClaimCheck):
     name: Function = Field(description="the name of a function of the study's `functions.py`")
     arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
-    experiment: build_list_type(Experiment, least=2, single=True) = Field(
-        None, description=EXPERIMENT
-    )
+    experiment: check.Experiments = None
     metric: Metric = Field(None, description="the name of a metric")
     where: Where = Field(
         {}, description="column of the runs table → value or list of values", min_length=1

@@ -28,20 +28,19 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects, verdicts
 from bezierplan.analysis.claims.check import (
-    FAILURES,
     GROUP_KEYS,
-    GROUPS,
-    THAN,
-    WORK,
     Comparing,
+    Failures,
     Group,
     Groups,
     OfRuns,
+    Than,
+    Work,
     refuse_same_group,
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compare_ranks, compute_a12
-from bezierplan.schema.model import Flag, Metric, Positive, build_error, build_list_type
+from bezierplan.schema.model import Flag, Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,8 +52,8 @@ class Options(Comparing):
         description="whether equal units are compared with each other, true or false; left out: as "
         "the experiment is drawn",
     )
-    groups: Groups = Field(None, description=GROUPS)
-    than: Groups = Field(None, description=THAN)
+    groups: Groups = None
+    than: Than = None
     pairs: build_list_type(build_list_type(Group, least=2)) = Field(
         None, description="a list of [group, other group], in place of groups and than"
     )
@@ -80,8 +79,8 @@ class Options(Comparing):
         "(one combination of `every`) make one mark: + if all are +, - if any is -; they are shown "
         "as secondary ones; left out otherwise",
     )
-    work: Metric = Field(None, description=WORK)
-    failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
+    work: Work = None
+    failures: Failures = "drop"
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
@@ -100,8 +99,8 @@ class Options(Comparing):
     def compared(self) -> list[tuple]:
         """Return the pairs that are compared: a group and the one beside it."""
         tiers = self.order or [self.groups or [], self.than or []]
-        of_tiers = [itertools.product(*both) for both in itertools.pairwise(tiers)]
-        return [*(self.pairs or []), *itertools.chain.from_iterable(of_tiers)]
+        beside = itertools.pairwise(tiers)
+        return [*(self.pairs or []), *(pair for two in beside for pair in itertools.product(*two))]
 
     def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
         """Yield each pair: as written, or each group with each of the others, or of the next
@@ -231,12 +230,12 @@ def _compute_effect_size(check: OfRuns, comparison: Contrast, ours: float) -> tu
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs
         if comparison.paired:
-            odds = np.array([np.sum(group > other), np.sum(group < other)], dtype=float)
+            more, fewer = np.sum(group > other), np.sum(group < other)
         else:
             (a, b), (c, d) = _count_contingency(group, other)
-            odds = np.array([a * d, b * c], dtype=float)
+            more, fewer = a * d, b * c
         with np.errstate(divide="ignore", invalid="ignore"):
-            return "odds ratio", float(odds[0] / odds[1])
+            return "odds ratio", float(np.divide(more, fewer))
     # Pairs of values say nothing about a spread or an extreme.
     if check.point_statistic not in ("mean", "median"):
         return "difference", ours

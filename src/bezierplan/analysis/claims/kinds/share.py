@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
+from bezierplan.analysis.claims.check import POOL, Columns, Failures, OfRuns
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
@@ -58,24 +58,21 @@ class Options(OfRuns):
     direction: Literal["at_least", "at_most"] = Field(
         None, description="at_least or at_most, where the threshold is a number"
     )
-    failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
+    failures: Failures = "drop"
     pick: LowestRun = Field(
         None, description="{lowest: metric}: one feasible run of each condition and method"
     )
 
     @model_validator(mode="after")
-    def _check_side(self) -> Options:
-        """Refuse a direction beside a threshold in words, and a number without one."""
+    def _check_keys(self) -> Options:
+        """Refuse a direction beside a threshold in words, a number without one, and a metric that
+        is neither true nor false if there is no event.
+        """
         if isinstance(self.threshold, str) != (self.direction is None):
             needed = (
                 "has no direction" if self.direction else "needs a direction, at_least or at_most"
             )
             raise build_error(f"threshold: {self.threshold}: {needed}")
-        return self
-
-    @model_validator(mode="after")
-    def _check_truth(self) -> Options:
-        """Refuse a metric that is neither true nor false if there is no event."""
         metric = METRICS.get(self.metric)
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
             raise build_error(

@@ -16,11 +16,11 @@ from pydantic import Field
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.check import WORK, WithMargin
+from bezierplan.analysis.claims.check import WithMargin, Work
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
-from bezierplan.schema.model import Metric, NumberColumn
+from bezierplan.schema.model import NumberColumn
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Options(WithMargin):
     statistic: Literal["std"] = Field(
         None, description="std: the spread of each condition; left out: the values themselves"
     )
-    work: Metric = Field(None, description=WORK)
+    work: Work = None
 
     def list_cells(self, rows: pd.DataFrame) -> Iterator[tuple[Terms, list]]:
         """Yield one comparison of all values of x, rising."""

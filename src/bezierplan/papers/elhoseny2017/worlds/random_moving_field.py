@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Positive
@@ -36,12 +35,8 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """
     side, count = problem["side"], problem["obstacles"]
     walls = limits.bounds_of([0.0, side, 0.0, side])
-    ends = [*problem["start"], *problem["target"]]
-    rng = generator(name, side, *ends, count, problem["layout"])
+    rng = generator(name, side, *problem["start"], *problem["target"], count, problem["layout"])
     radius = description["radius"] * side
-    centres, velocities = moving.movement(
-        rng, description, count, walls, np.reshape(ends, (2, 2)), radius
-    )
-    circles = moving.circles(description, walls, centres, velocities, np.full(count, float(radius)))
+    circles = moving.draw_circles(rng, description, problem, count, walls, radius)
     # Centres are reflected at the outermost cells' centres; the field reaches half a cell farther.
     return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), view="cells")

@@ -103,7 +103,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     workspaces.draw_workspace(axes, home)
     style.draw_parts(axes, frame, workspaces.ENDS)
     notes = []
-    for (run, way), (name, look) in zip(frame.groupby("run"), _LINES.items()):
+    for (run, way), (name, look) in zip(frame.groupby("run", sort=False), _LINES.items()):
         axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, label=name, **look)
         cross = style.build_mark_style(
             "X", 7, look["color"], markeredgecolor=style.FREE, label="last position"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
 from pydantic import Field
 
 from bezierplan.workspaces import limits, moving
@@ -32,13 +31,9 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     Raises ValueError if no free place is found.
     """
     walls = limits.bounds_of(description["bounds"])
-    ends = [*problem["start"], *problem["target"]]
-    rng = generator(name, *ends, problem["layout"])
-    radius, count = description["radius"], problem["obstacles"]
+    rng = generator(name, *problem["start"], *problem["target"], problem["layout"])
     # All circles of the layout are drawn and the first kept: worlds with more circles contain those
     # with fewer.
-    centres, velocities = moving.movement(
-        rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius
+    return moving.draw_circles(
+        rng, description, problem, description["circles"], walls, description["radius"]
     )
-    radii = np.full(len(centres[:count]), float(radius))
-    return moving.circles(description, walls, centres[:count], velocities[:count], radii)
