@@ -434,6 +434,9 @@ class Checks:
     def check_table(self, name: str, table: TableEntry) -> None:
         """Check that the names of a table exist, and that its file of published numbers fits it."""
         self.check_names(table)
+        for number, entry in enumerate(table.values if isinstance(table, Pivot) else []):
+            with self.at("values", str(number)):
+                check_share(entry)
         if isinstance(table, Pivot) and table.published:
             runs = self.design(table.experiment)
             published.check(self.study, runs, table)
@@ -465,6 +468,7 @@ class Checks:
         for panel in figure.panels:
             with self.at("panels", panel.place):
                 self.check_names(panel)
+                check_share(panel)
                 self.check_panel(panel)
 
     def check_panel(self, panel: Panel) -> None:
@@ -612,6 +616,14 @@ class Checks:
             for method, *_ in settled:
                 with self.at("values", method):
                     self.check_settings(changed, method)
+
+
+def check_share(entry: Model) -> None:
+    """Raise Fault for the share of a metric that has a unit: it is nothing that is true or false."""
+    metric = getattr(entry, "metric", "")
+    unit = metrics.METRICS[metric].unit
+    if "share" in convert_to_list(getattr(entry, "statistic", "")) and unit != "-":
+        raise Fault(f"statistic: share: of {metric}; expected a metric that is true or false")
 
 
 def check_inside(folder: Path, name: str, location: str) -> None:
