@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from snakemake import benchmark
 from snakemake.script import script
 
 from bezierplan.running.jobs.forks import FIRST, LATER, Forks
@@ -174,6 +175,20 @@ def test_many_scripts_at_once(started, tmp_path):
         )
     assert ends == [k % 3 != 0 for k in range(12)]
     assert all(file.read_text() == "done" for file in files)
+
+
+def test_a_script_begins_once_it_is_measured(started, monkeypatch):
+    """However short it is: a process that has ended cannot be measured."""
+    measure = benchmark.benchmarked
+
+    def measure_late(*arguments):
+        time.sleep(0.3)
+        return measure(*arguments)
+
+    monkeypatch.setattr(benchmark, "benchmarked", measure_late)
+    record = benchmark.BenchmarkRecord()
+    assert started.run_in_fork("short.py", "pass", None, record)
+    assert 0 < record.running_time < 20
 
 
 def test_large_object_of_a_script_that_does_not_read_it(started):

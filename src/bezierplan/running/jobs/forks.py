@@ -140,14 +140,11 @@ class Forks:
         names what was under way.
         """
         ours, theirs = socket.socketpair()
+        work = pickle.dumps((os.getcwd(), name, source, snakemake))
         with ours:
             with theirs, self._starting:
                 self._hand_over(theirs)
-            # A job that dies at once leaves nobody to read.
-            with contextlib.suppress(ConnectionError):
-                ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
-                ours.shutdown(socket.SHUT_WR)
-            under_way, status, ended = _watch(ours, benchmark)
+            under_way, status, ended = _watch(ours, work, benchmark)
         if status is not None and not ended:
             # A script that ends with 1 has told why; of any other end nothing has been told.
             if status in (0, 1):
@@ -184,8 +181,8 @@ class Forks:
             )
 
 
-def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
-    """Follow a job until it ends.
+def _watch(job: socket.socket, work: bytes, benchmark: Any) -> tuple[str, int | None, str]:
+    """Send a job its work, and follow it until it ends.
 
     Return what it last had under way, its exit status (None if unknown), and why it was ended here:
     it took longer than it may; empty otherwise.
@@ -215,6 +212,11 @@ def _watch(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
                         from snakemake.benchmark import benchmarked
 
                         measuring.enter_context(benchmarked(process, benchmark))
+                    # Only now, because a job that has ended cannot be measured. One that dies at
+                    # once leaves nobody to read.
+                    with contextlib.suppress(ConnectionError):
+                        job.sendall(work)
+                        job.shutdown(socket.SHUT_WR)
                 elif not end:
                     under_way = text
                     job.settimeout(None if kind == "inf" else float(kind))
@@ -293,11 +295,11 @@ def run(parent: socket.socket) -> None:
     # What was imported before the fork is no garbage: to look through it again and again takes a
     # fifth of a second of most jobs.
     gc.freeze()
-    with parent.makefile("rb") as stream:
-        folder, name, source, snakemake = pickle.load(stream)
     tell = parent.makefile("w", encoding="utf-8")
     tell.write(f"{PROCESS} {os.getpid()}\n")
     tell.flush()
+    with parent.makefile("rb") as stream:
+        folder, name, source, snakemake = pickle.load(stream)
     UNDER_WAY.addHandler(logging.StreamHandler(tell))
     # A workflow may have changed its folder since this process's parent was started.
     os.chdir(folder)
