@@ -47,7 +47,7 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         "Of 3 printed numbers our range is narrow enough to test 2: 1 lie inside it, 1 outside. "
         "For the other 1 it is so wide that it holds at least half of the paper's numbers of the "
         "same kind. Wherever they lie, 1 of the 2 prove nothing of the paper (the map is ours: "
-        "1). Only 1 can, and 0 of these lie inside."
+        "1). Only 1 can; of these, 0 lie inside."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

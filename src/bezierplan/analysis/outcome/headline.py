@@ -36,8 +36,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
             f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing of the "
-            f"paper ({why}). Only {len(worth)} can, and {(worth['position'] == 'inside').sum()} of "
-            "these lie inside."
+            f"paper ({why}). Only {len(worth)} can; of these, "
+            f"{(worth['position'] == 'inside').sum()} lie inside."
         )
     return text
 
