@@ -35,10 +35,10 @@ IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
 GENTLY = (
     "Least often free first. Excess: how much longer a free path is than the exact shortest one. "
-    "Excess and time are medians over the problems. The rounded shortest path has no tighter turn "
-    "than half of the method's free paths without corners; a dash means that there are none. The "
-    "method beats it in a problem if its median path is shorter, or if its turns are wider than "
-    "those of any rounded shortest path."
+    "Excess and time are medians over the problems. The rounded path in the sixth column is as "
+    "smooth as the method's: its turns are no tighter than those of half of the method's free "
+    "paths without corners; a dash means that there are none. The method beats it in a problem if "
+    "its median path is shorter, or if its turns are wider than those of any rounded path."
 )
 ALONE = (
     "The row of the rounded shortest path has the turning radius that it takes if none is asked; "
@@ -92,7 +92,7 @@ def main() -> None:
     )
     tables = {
         key: {
-            name: (study.tables[name].title, len(study.tables[name].index), bool(table.identify))
+            name: (study.tables[name].title, study.tables[name].index, bool(table.identify))
             for name, table in study.find_tables_of_runs().items()
             if table.published and table.printed
         }
@@ -163,14 +163,14 @@ def build_paper_page(
     measured: str,
     numbers: pd.DataFrame,
     folder: Path,
-    tables: Mapping[str, tuple[str, int, bool]],
+    tables: Mapping[str, tuple[str, list[str], bool]],
 ) -> str:
     """Return the page of a paper, as markdown: the answer, its main claims, its method beside the
     rounded shortest path, and its tables with the printed number beside ours in each cell.
 
     claims, numbers: of this paper. measured: the table of methods. folder: the study's results.
-    tables: name -> title, how many columns name the rows, and whether some lengths can be listed;
-    for tables with printed numbers.
+    tables: name -> title, which columns name the rows, and whether some lengths can be listed; for
+    tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds, by which criterion of ours, or why that is open"}
@@ -189,7 +189,7 @@ def build_paper_page(
         MORE.format(folder.name),
         LAID,
     ]
-    for name, (table_title, heads, is_listed) in tables.items():
+    for name, (table_title, index, is_listed) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
         laid = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
         own = numbers[numbers["table"] == name]
@@ -201,7 +201,7 @@ def build_paper_page(
             f"### {naming.format_heading(name)}: {table_title}",
             *told,
             *([LISTED] if is_listed else []),
-            write_table(_place_beside(ours, laid, heads)),
+            write_table(_place_beside(ours, laid, index)),
         ]
     return "\n\n".join(parts) + "\n"
 
@@ -292,8 +292,12 @@ def name_place(place: str, labels: naming.Labels) -> str:
     )
 
 
-def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
-    """Return a table with the printed number before our range in each cell, or before ours."""
+def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, index: list[str]) -> pd.DataFrame:
+    """Return a table with the printed number before our range in each cell, or before ours.
+
+    index: the columns that name the rows, which come first in our table.
+    """
+    heads = len(index)
     values = ours.iloc[:, heads:]
     # The paper prints nothing in these cells.
     cells = values.map(lambda text: f"– ours {text}" if text else "").to_numpy()
@@ -302,11 +306,12 @@ def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.D
         text = comparison.describe_range(number) or f"ours {values.iat[place]}"
         if not number["counted"]:
             text = text[text.index("ours") :]
-        impossible = " (impossible)" if str(number["possible"]) == "False" else ""
-        cells[place] = f"{number['as_printed']}{number['mark']}{impossible} {text}"
+        # Whatever our map, no runs have such numbers.
+        mark = " (impossible)" if str(number["possible"]) == "False" else number["mark"]
+        cells[place] = f"{number['as_printed']}{mark} {text}"
     names = ours.iloc[:, :heads].agg(", ".join, axis=1)
-    # Where the paper prints no head, the first key of the numbers tells what the rows are.
-    head = ", ".join(filter(str.strip, ours.columns[:heads])) or numbers.columns[0]
+    # The paper may print no head.
+    head = ", ".join(filter(str.strip, ours.columns[:heads])) or ", ".join(index)
     return pd.DataFrame(cells, pd.Index(names, name=head), ours.columns[heads:])
 
 
@@ -337,28 +342,29 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
 
     of_problems: as from `methods.measure_studies`.
     """
-    # Where every straight line is free, nobody can be shorter.
-    straight = of_problems.groupby(["study", "family"])["straight"].transform("all")
-    rows = methods.group_by_family(of_problems[~straight.astype(bool)])
+    rows = methods.group_by_family(of_problems)
     own = rows["proposed"].astype(bool)
     times = [
         f"{each.min():.2g} to {each.max():.3g} ms"
         for each in (rows.loc[rows["method"] == "rounded", "cpu_ms"], rows.loc[own, "cpu_ms"])
     ]
-    rows = rows[own & (rows["both"] > 0)]
+    # Where every straight line is free, nobody can be shorter.
+    straight = of_problems.groupby(["study", "family"])["straight"].all()
+    blocked = [not straight[place] for place in zip(rows["study"], rows["family"])]
+    rows = rows[own & (rows["both"] > 0) & pd.Series(blocked, rows.index)]
     others = rows[rows["adds"] > 0]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
         f"and takes {times[0]}; the papers' methods take {times[1]}. "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
-        "with smooth paths, the paper's method never beats it: it is never shorter with turns as "
-        "wide, nor are its turns wider"
+        "with smooth paths and no free straight line, the paper's method is better in no problem: "
+        "never shorter with turns as wide, and never with wider turns"
     )
-    beaten = " and ".join(
-        f"in {each.adds:.0f} of {each.both:.0f} ({format_name(each.study)}, {each.family})"
+    better = " and ".join(
+        f"{each.adds:.0f} of {each.both:.0f} problems ({format_name(each.study)}, {each.family})"
         for each in others.itertuples()
     )
-    return f"{told}. In the others, it beats it {beaten} problems." if beaten else f"{told}."
+    return f"{told}. It is better in {better}." if better else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:

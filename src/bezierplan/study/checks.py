@@ -619,7 +619,7 @@ class Checks:
 
 
 def check_share(entry: Model) -> None:
-    """Raise Fault for the share of a metric that has a unit: it is nothing that is true or false."""
+    """Raise Fault for the share of a metric that has a unit, so that it is not true or false."""
     metric = getattr(entry, "metric", "")
     unit = metrics.METRICS[metric].unit
     if "share" in convert_to_list(getattr(entry, "statistic", "")) and unit != "-":

@@ -167,7 +167,7 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
                 f"{row.cornered:.0f} of {row.round + row.cornered:.0f}" for row in rows.itertuples()
             ],
             "excess": [*map(_format_share, rows["excess"])],
-            "excess of the rounded shortest path": [*map(_format_share, rows["rounded"])],
+            "excess of a rounded path as smooth": [*map(_format_share, rows["rounded"])],
             "problems in which the method beats it": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
                 for row in rows.itertuples()

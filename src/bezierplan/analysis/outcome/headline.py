@@ -26,8 +26,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     )
     if vague := len(numbers) - len(told):
         text += (
-            f" For the other {vague} it is so wide that it holds at least half of the paper's "
-            "numbers of the same kind."
+            f" For the other {vague} our runs scatter so widely that at least half of the paper's "
+            "numbers of the same kind would fit too."
         )
     reasons = told["reason"].fillna("")
     worth = told[reasons == ""]
@@ -36,8 +36,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
             f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing of the "
-            f"paper ({why}). Only {len(worth)} can; of these, "
-            f"{(worth['position'] == 'inside').sum()} lie inside."
+            f"paper ({why}). Only {len(worth)} could confirm a paper, and "
+            f"{(worth['position'] == 'inside').sum()} do."
         )
     return text
 
