@@ -103,7 +103,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
         _write(axes, 1.04, sum(heights) + 0.12, "inside", "left")
         _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by", "left")
         if wide:
-            _write(axes, 1.34, sum(heights) + 0.12, "why it proves little", "left")
+            _write(axes, 1.34, sum(heights) + 0.12, "why it proves nothing", "left")
         axes.legend(
             handles=[_build_dots([0], [0], *look)[0] for look in LOOKS.values()],
             labels=list(LOOKS),

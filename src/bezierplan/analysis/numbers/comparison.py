@@ -49,7 +49,7 @@ SIGNS_MEAN = (
     "range also holds at least half of the paper's other numbers of the same kind"
 )
 
-FITTED = "we fitted an unprinted detail to it"
+FITTED = "we fitted a detail to it"
 ONE_DRAW = "one draw of a random map"
 NO_MAP = "the map is ours"
 UNDEFINED = "not defined in the paper"
