@@ -213,3 +213,18 @@ def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     )
     code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"
     assert starts.python(code, tmp_path, tmp_path) == "42\n"
+
+
+@pytest.mark.skipif(
+    os.environ.get("NUMBA_CPU_NAME") != "x86-64-v3",
+    reason="kernels are generic here",
+)
+def test_numpy_takes_code_for_the_family_of_processors_as_kernels_do():
+    from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
+
+    assert not [
+        name
+        for name in __cpu_dispatch__
+        if __cpu_features__[name] and (name.startswith("AVX512") or name == "X86_V4")
+    ]
+    assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
