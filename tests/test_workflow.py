@@ -415,9 +415,8 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
 
 # One kernel that calls another one of another module.
 RUN_ONCE = """
-import numpy as np
 from bezierplan.planners.parts import gene_lists
-print(gene_lists.compute_q(np.array([1, 2, 3]), np.array([2, 3, 5]), 10))
+print(gene_lists.compute_q(2, 3, 3, 10))
 """
 
 
