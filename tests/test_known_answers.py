@@ -61,6 +61,23 @@ def test_a_difference_counts_from_the_margin_on(statistic, paired, difference, e
     assert mark(check, apart(difference)) == expected
 
 
+def test_a_sentence_about_single_runs_holds_in_as_many_as_our_runs_say():
+    runs = table({"a": np.where(np.arange(200) < 140, 1.0, 3.0), "b": np.full(200, 2.0)})
+    _, checks = judge({"checks": [LOWER | {"statistic": "min"}]}, runs, repeats={"tried": 1})
+    row = checks.iloc[0]
+    assert row["mark"] == "?"
+    assert float(row["reason"].split()[2]) == pytest.approx(70, abs=3)
+
+
+@pytest.mark.parametrize(
+    ("printed", "size", "expected"),
+    [(10.5, 10, True), (10.6, 10, False), (-0.5, 10, True), (-0.6, 10, False), (1e6, None, True)],
+)
+def test_a_count_can_be_none_to_all_of_the_runs_but_for_its_rounding(printed, size, expected):
+    row = {"least": 5.0, "most": 6.0, "statistic": "count", "decimals": 0}
+    assert comparison.is_possible(row | {"value_published": printed}, size) == expected
+
+
 @pytest.mark.parametrize(
     ("difference", "expected"), [(-1.01, "+"), (-0.99, "-"), (0.99, "-"), (-2.0, "+")]
 )

@@ -271,6 +271,14 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
+@pytest.mark.parametrize(("at", "waiting"), [(1.0, True), (3.0, False), (math.nan, False)])
+def test_a_robot_is_hit_waiting_if_it_waited_before(room, monkeypatch, at, waiting):
+    verdict = drives.motion_check.Verdict(at, np.zeros(4), 0.0, 1e-9)
+    monkeypatch.setattr(drives.motion_check, "check", lambda motion, world: verdict)
+    row = a_row(room, [(0.5, 2.5), (0.5, 2.5), (0.5, 4.5)], [0.0, 2.0, 4.0])
+    assert row["hit_waiting"] == waiting
+
+
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.
 THERE = (3.5, 2.5)
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
 from bezierplan.running.simulation import bounds, cells, evasion, motion_check
-from bezierplan.running.simulation.circles import is_near
+from bezierplan.running.simulation.circles import ARRIVED, STOPPED, is_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
@@ -404,3 +404,16 @@ def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
 )
 def test_nearest_place_on_a_step_to_the_origin(dx, dy, ex, ey, nearest):
     assert motion_check.measure_nearest(dx, dy, ex, ey) == pytest.approx(nearest)
+
+
+@pytest.mark.parametrize(("waits", "event", "end"), [(False, ARRIVED, 6.0), (True, STOPPED, 1.5)])
+def test_only_a_robot_that_waits_stops_before_cells_that_a_new_way_enters(waits, event, end):
+    """The way is 6 long and enters a cell after 2.5."""
+    shut, other = draw_maps(["...#..."], ["...#..#"])
+    world = ChangingCells((shut, other), np.array([30.0]), 1.0, 60)
+    policy = Policy(replan="when_blocked", waits=waits, brake=1.0)
+    found, times, progress = cells.follow(
+        world, build_way(np.array([(0.5, 0.5), (6.5, 0.5)])), 0.0, policy
+    )
+    assert found == event
+    assert (times[-1], progress[-1]) == pytest.approx((end, end))
