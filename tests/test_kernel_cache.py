@@ -228,3 +228,9 @@ def test_numpy_takes_code_for_the_family_of_processors_as_kernels_do():
         if __cpu_features__[name] and (name.startswith("AVX512") or name == "X86_V4")
     ]
     assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
+
+
+def test_a_command_begins_without_numpy():
+    """What numpy reads when it is imported must be set before."""
+    source = "import sys, bezierplan.__main__; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", source], check=False).returncode == 0

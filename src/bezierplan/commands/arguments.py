@@ -9,10 +9,11 @@ from typing import Annotated, Any, NoReturn, get_args, get_origin
 
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
-from bezierplan.workspaces.limits import Place
 
 Settings = dict[str, Any]
 OutFile = Annotated[Path, "is written"]
+# As in `workspaces.limits`, which would import numpy before `places.choose_machine_code`.
+Place = tuple[float, float]
 
 
 class Parser(ArgumentParser):
