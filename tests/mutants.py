@@ -11,6 +11,7 @@ nine in ten are caught; those of tests/data/equivalent_mutants.csv change nothin
 import ast
 import csv
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -91,11 +92,13 @@ def nearest(fault: Fault) -> list[str]:
     """Return the tests that name the module that has a fault, and then those that import the least
     beside it; none that starts a whole workflow.
     """
-    found = []
+    found, home = [], ROOT / fault.file
+    # Kinds of checks are imported by their names in a study.
+    home = home.parents[1] / "check.py" if home.parent.name == "kinds" else home
     for test in ROOT.glob("tests/test_*.py"):
         text, reached = test.read_text(), digest.find_sources(str(test))
-        # Kinds are imported by their names in a study.
-        if (ROOT / fault.file in reached or "/kinds/" in fault.file) and "starts" not in text:
+        workflow = re.search("^(import|from) starts", text, re.MULTILINE)
+        if home in reached and not workflow:
             found.append((Path(fault.file).stem not in text, len(reached), f"tests/{test.name}"))
     return [test for *_, test in sorted(found)[:NEAREST]]
 
