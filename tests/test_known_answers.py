@@ -128,6 +128,14 @@ def test_groups_are_alike_within_the_margin_of_the_target(difference, target, ex
     assert mark(check, apart(target + difference)) == expected
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_difference_just_beyond_the_margin_needs_runs_that_scatter_less(side):
+    """Its standard error is a ninth of the margin, then a hundredth."""
+    check = WITHIN | {"target": 0.0, "margin": 1.0}
+    assert mark(check, apart(side * 1.1, std=0.5)) == "?"
+    assert mark(check, apart(side * 1.1, std=0.05)) == "-"
+
+
 def events(k: int, n: int) -> pd.DataFrame:
     """Runs of which k have the event."""
     return table({"a": np.where(np.arange(n) < k, -1.0, 1.0)})
@@ -261,6 +269,13 @@ def test_a_corner_turns_by_more_than_a_millionth(turn, corners):
     path = Path("polyline", points)
     assert measures.corners(path) == corners
     assert measures.turning(path) == pytest.approx(turn)
+
+
+def test_a_reference_below_the_exact_length_is_told_with_its_problem():
+    runs = pd.DataFrame({"problem": ["a", "b"], "reference": [2.0, 0.9], "bound": [1.0, 1.0]})
+    assert measures.read_reference(runs[:1]).tolist() == [2.0]
+    with pytest.raises(ValueError, match=r"^problem b: reference 0\.9 lies below"):
+        measures.read_reference(runs)
 
 
 # --------------------------------------------------------------------------------------------------

@@ -95,6 +95,8 @@ def test_families_stand_worst_first_and_say_where_a_method_adds_something(rows):
     shorter = rows.assign(excess=rows["rounded"] - 0.01)
     smoother = rows.assign(rounded_curvature=rows["curvature"] * 1.1)
     assert methods.group_by_family(shorter)["adds"].sum() == 2
+    equal = rows.assign(excess=rows["rounded"] - 1e-7)
+    assert methods.group_by_family(equal)["adds"].sum() == 0, "rounding decides nothing"
     assert methods.group_by_family(smoother)["adds"].sum() == 1
     text = methods.format_table(table, {"mine/curved": "Curves"})
     assert text["scenarios"].tolist() == table["family"].tolist()
