@@ -36,7 +36,8 @@ def benchmark(script, monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(run, "TREE", tmp_path)
     monkeypatch.setattr(run, "STORED", tmp_path / "stored.csv")
     monkeypatch.setattr(run, "MADE", tmp_path / "made.csv")
-    pd.Series(STORED, name="ratio").rename_axis("cost").to_csv(run.STORED)
+    table = pd.Series(STORED, name="ratio").rename_axis("cost").to_csv()
+    run.STORED.write_text(f"# {run.find_processor()}\n{table}")
 
     def measure(costs, *words):
         measures = {name: partial(next, iter(times)) for name, times in costs.items()}
@@ -71,6 +72,15 @@ def test_what_stays_slow_is_named_and_fails_where_it_is_much(benchmark, costs, s
     assert found == status
     assert lines[0].startswith(named)
     assert lines[1:] == ["made.csv"]
+
+
+def test_what_is_slow_on_another_processor_is_named_and_no_failure(benchmark, tmp_path):
+    file = tmp_path / "stored.csv"
+    file.write_text(f"# another{file.read_text().removeprefix('#')}")
+    status, lines = benchmark(times(prm=[3.0] * 3))
+    assert status == 0
+    assert lines[0] == "planner: prm: 3.00 times as long as stored"
+    assert lines[1] == "stored on another processor, so this is no failure"
 
 
 def test_a_stored_copy_is_compared_with_next_time(benchmark, tmp_path):
