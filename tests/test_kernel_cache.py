@@ -215,10 +215,6 @@ def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     assert starts.python(code, tmp_path, tmp_path) == "42\n"
 
 
-@pytest.mark.skipif(
-    os.environ.get("NUMBA_CPU_NAME") != "x86-64-v3",
-    reason="kernels are generic here",
-)
 def test_numpy_takes_code_for_the_family_of_processors_as_kernels_do():
     from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 
@@ -227,7 +223,8 @@ def test_numpy_takes_code_for_the_family_of_processors_as_kernels_do():
         for name in __cpu_dispatch__
         if __cpu_features__[name] and (name.startswith("AVX512") or name == "X86_V4")
     ]
-    assert os.environ["OPENBLAS_CORETYPE"] == "Haswell"
+    is_v3 = os.environ["NUMBA_CPU_NAME"] == "x86-64-v3"
+    assert os.environ.get("OPENBLAS_CORETYPE") == ("Haswell" if is_v3 else None)
 
 
 def test_a_command_begins_without_numpy():

@@ -66,11 +66,11 @@ def choose_machine_code() -> None:
     flags = Path("/proc/cpuinfo")
     words = flags.read_text(encoding="utf-8").split() if flags.is_file() else []
     # Every processor of the kind x86-64-v3 has these, and older ones lack some.
-    usual = {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words}
+    is_v3 = {"avx2", "bmi1", "bmi2", "f16c", "fma", "movbe"} <= {*words}
     # numba and numpy read these when they are imported.
-    os.environ.setdefault("NUMBA_CPU_NAME", "x86-64-v3" if usual else "generic")
+    os.environ.setdefault("NUMBA_CPU_NAME", "x86-64-v3" if is_v3 else "generic")
     os.environ.setdefault("NUMBA_CPU_FEATURES", "")
-    if usual:
+    if is_v3:
         os.environ.setdefault("OPENBLAS_CORETYPE", "Haswell")
         os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", _LATER_FEATURES)
 

@@ -70,8 +70,8 @@ def main(
         # Before planning, which may take long.
         arguments.check_suffix("out", out, FILES)
         # A ROS map's image lies beside it, mostly under its name, and must not be lost.
-        own = map.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix("")
-        if own and out.exists():
+        there = map.exists() and out.exists()
+        if there and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
             raise Fault(f"out: {out}: is there, with the map's name; expected another file")
     if not map.suffix and not map.exists():
         map = api.example_map(str(map))

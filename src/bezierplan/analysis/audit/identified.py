@@ -45,7 +45,7 @@ class Identification(NamedTuple):
 
     paths: the cells of each of those with fewest edges, or numbers of moves. chance: share of the
     numbers nearby, as printed, that some path matches. length: of the first path, in cells; NaN
-    without one. moves: how numbers of moves are told; empty for cells.
+    without one. moves: the words for numbers of moves, with {} for each; empty for cells.
     """
 
     paths: list[tuple[int, ...]]

@@ -123,8 +123,8 @@ def compare(
     )
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
-    redrawn = results.runs.loc[results.runs["workspace"].isin(reconstructed), "problem"].unique()
-    table["reason"] = find_reasons(both, spec, redrawn, fitted)
+    of_ours = results.runs.loc[results.runs["workspace"].isin(reconstructed), "problem"].unique()
+    table["reason"] = find_reasons(both, spec, of_ours, fitted)
     table["primary"] = table.index.isin(select(table, spec.primary).index)
     if "method" in table:
         table["primary"] &= ~table["method"].isin(variant_of)
@@ -135,22 +135,22 @@ def compare(
 
 
 def find_reasons(
-    numbers: pd.DataFrame, spec: Pivot, redrawn: Collection[str], fitted: dict[str, dict]
+    numbers: pd.DataFrame, spec: Pivot, of_ours: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
     """Find the reason why each number of a table proves nothing of the paper, wherever it lies;
     empty if it may prove something.
 
-    Our definition or our map may be wrong, or something was fitted to the number. redrawn: problems
-    on maps that the paper does not print. fitted: metric -> which numbers of the table are
-    such (column -> value or list of values).
+    Our definition or our map may be wrong, or something was fitted to the number. of_ours: problems
+    on maps that the paper does not print. fitted: metric -> which numbers of the table are such
+    (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
     printed = numbers.assign(method=numbers.get("printed_method"))
     was_fitted = pd.Series(False, numbers.index)
     for metric, where in fitted.items():
         was_fitted |= printed.index.isin(select(printed, where | {"metric": metric}).index)
-    on_redrawn = numbers["by_run"].map(
-        lambda runs: not runs.index.unique("problem").intersection([*redrawn]).empty,
+    on_our_map = numbers["by_run"].map(
+        lambda runs: not runs.index.unique("problem").intersection([*of_ours]).empty,
         na_action="ignore",
     )
     reason_of = pd.Series("", numbers.index)
@@ -158,7 +158,7 @@ def find_reasons(
     for reason, whose in (
         (FITTED, was_fitted),
         (ONE_DRAW, numbers["draws"].eq(1)),
-        (NO_MAP, on_redrawn.eq(True)),
+        (NO_MAP, on_our_map.eq(True)),
         (UNDEFINED, numbers["metric"].isin(vague)),
     ):
         reason_of = reason_of.mask(whose, reason)

@@ -147,7 +147,8 @@ def find_interface_fault(module: ModuleType) -> str:
             )
     if isinstance(extra := getattr(module, "extra", ()), str):
         return f"extra: {extra!r}: expected a tuple of names, such as ({extra!r},)"
-    kinds = getattr(module, "workspaces", ("grid",))
+    # A planner that names none serves all.
+    kinds = getattr(module, "workspaces", (*KINDS.values(),))
     if not isinstance(kinds, tuple | list) or not kinds:
         return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
     for kind in kinds:
