@@ -1,12 +1,8 @@
 """The content of the site: tables and figures of a scale, which mirror the papers', and as evidence
-the numbers, verdicts, reasons, orders and levels of many runs that docs/outcome keeps.
+the numbers, verdicts and reasons of many runs that docs/outcome keeps.
 """
 
-import base64
 import contextlib
-import json
-import re
-import zlib
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -43,8 +39,8 @@ def find_results() -> tuple[str, Path]:
 def read_content() -> tuple[SimpleNamespace, Path]:
     """Read the content of the page of results, and return it with the folder of its results.
 
-    Each study also gets its name, as people search for it; definition; data, of the viewer;
-    picture, one of its figures. Raises Fault.
+    Each study also gets its name, as people search for it; definition; and picture, one of its
+    figures. Raises Fault.
     """
     scale, folder = find_results()
     with contextlib.chdir(ROOT):
@@ -57,10 +53,8 @@ def read_content() -> tuple[SimpleNamespace, Path]:
             [str(folder / name) for name in outcome.TABLES],
             evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
         )
-    page.data = unpack_data((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
-        study.name, study.definition, study.data = outcome.format_name(key), studies[key], page.data
-        study.shown = page.data["studies"][key]["shown"]
+        study.name, study.definition = outcome.format_name(key), studies[key]
         of_name = {figure["name"]: figure for figure in study.figures}
         study.picture = of_name.get(PICTURES.get(key), study.figures[0])
     return page, folder
@@ -69,12 +63,6 @@ def read_content() -> tuple[SimpleNamespace, Path]:
 def read_prose(key: str) -> str:
     """Read the text on a paper or planner that is written by hand."""
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
-
-
-def unpack_data(page: str) -> dict[str, Any]:
-    """Return the runs, problems and workspaces that a page of results holds for its viewer."""
-    packed = re.search(r'id="page-data">([^<]*)', page)[1]
-    return json.loads(zlib.decompress(base64.b64decode(packed)))
 
 
 # --------------------------------------------------------------------------------------------------

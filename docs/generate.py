@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import re
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,6 +22,7 @@ import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
 
+import bezierplan as bp
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.places import OUTCOME
@@ -76,7 +77,7 @@ def write(folder: Path) -> None:
         "words": describe_setting,
         "name": outcome.format_name,
     }
-    planners = {name: describe_planner(name, page.studies) for name in list_planners()}
+    planners = {name: describe_planner(name, page.studies, folder) for name in list_planners()}
     environment.globals |= {
         "page": page,
         "papers": page.studies,
@@ -170,8 +171,10 @@ def read_origin_of_maps(study: SimpleNamespace) -> str:
 # Methods
 
 
-def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNamespace:
-    """Return the content of the page of a planner.
+def describe_planner(
+    name: str, studies: dict[str, SimpleNamespace], folder: Path
+) -> SimpleNamespace:
+    """Return the content of the page of a planner, and draw one of its runs below a folder.
 
     users: study -> its methods. algorithms: the studies whose plain Python it is. settings: rows.
     open, achieved, resting: entries of assumptions, rows of the table of methods, and claims, each
@@ -185,6 +188,11 @@ def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNa
         found = ((studies[key], rows(studies[key], set(users[key]))) for key in users)
         return [(study, row) for study, some in found for row in some]
 
+    (folder / "methods").mkdir(exist_ok=True)
+    picture = folder / "methods" / f"{name}.svg"
+    # First of the paper that proposes the method.
+    order = sorted(users, key=lambda key: find_algorithm(key) not in users[key])
+    drawn = (draw_run(studies[key], users[key], picture) for key in order)
     return SimpleNamespace(
         name=name,
         title=text.partition("\n")[0].removeprefix("# "),
@@ -193,7 +201,7 @@ def describe_planner(name: str, studies: dict[str, SimpleNamespace]) -> SimpleNa
         maps=getattr(module, "workspaces", None),
         users=users,
         algorithms=[key for key in users if find_algorithm(key) in users[key]],
-        runs=sorted(collect(list_typical_runs), key=is_not_proposed),
+        run=next(filter(None, drawn), None),
         settings=[
             [
                 f"`{setting}`",
@@ -225,23 +233,23 @@ def find_algorithm(key: str) -> str:
     return re.search(rf'^METHOD = "{key}/(\w+)"$', text, re.M)[1]
 
 
-def list_typical_runs(study: SimpleNamespace, methods: set[str]) -> Iterable[Any]:
-    """List the median runs of some methods on each world that does not move.
-
-    The viewer of the page of results has their paths.
+def draw_run(
+    study: SimpleNamespace, methods: Collection[str], file: Path
+) -> tuple[str, bp.Answer] | None:
+    """Draw the first run with a free path, on a map that is in a file and does not change, of the
+    first of some methods that has one; return its name and the answer.
     """
-    for each in study.shown:
-        if each["median"] and each["problem"] and each["method"] in methods:
-            run = study.data["runs"][each["median"]]
-            problem = study.data["problems"][run["problem"]]
-            if problem["world"] is None and run["path"]:
-                yield each, run, problem, study.data["workspaces"][problem["workspace"]]
-
-
-def is_not_proposed(found: tuple[SimpleNamespace, Any]) -> bool:
-    """Tell whether a run is of another method than the one that its paper proposes."""
-    study, (shown, *_) = found
-    return shown["method"] != find_algorithm(study.key)
+    own = study.definition
+    for name, experiment in own.experiments.items():
+        places = [each for each in experiment.problems if not own.workspace_of(each).drawn_kind]
+        used = [method for method in experiment.methods if method in methods]
+        if used and places and not own.moves(name) and not experiment.vary:
+            for repeat in range(experiment.repeats["full"]):
+                run = f"{study.key}/{name}/{places[0]}/{used[0]}/{repeat}"
+                if (answer := bp.replay(run)).feasible:
+                    answer.save(file)
+                    return run, answer
+    return None
 
 
 def describe_value(study: SimpleNamespace, methods: list[str], setting: str) -> str:

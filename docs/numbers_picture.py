@@ -82,7 +82,8 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             _write(axes, 1.04, middle, f"{inside} of {len(told)}" if len(told) else "–", "left")
             _write(axes, 1.2 if wide else 1.4, middle, f"{off:.2g} %", "left")
             if wide:
-                _write(axes, 1.34, middle, describe_reasons(own["reason"]), "left")
+                why = describe_reasons(told["reason"]) if len(told) else "too wide to tell"
+                _write(axes, 1.34, middle, why, "left")
             if study != last:
                 _write(axes, -0.5 if wide else -0.84, middle, names[study], "left", weight="bold")
                 axes.axhline(
@@ -101,7 +102,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
         axes.spines[:].set_visible(False)
         axes.tick_params(length=0)
         _write(axes, 1.04, sum(heights) + 0.12, "inside", "left")
-        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by", "left")
+        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "median\nmiss", "left")
         if wide:
             _write(axes, 1.34, sum(heights) + 0.12, "why it proves nothing", "left")
         axes.legend(
@@ -118,7 +119,9 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
 
 
 def describe_reasons(reasons: pd.Series) -> str:
-    """Say why the numbers of a table prove little, and of how many that is so unless of all."""
+    """Say why the numbers of a table that can be tested prove nothing, and of how many that is so
+    unless of all.
+    """
     counts = reasons.value_counts()
     return "\n".join(
         reason if count == len(reasons) else f"{count} of {len(reasons)}: {reason}"

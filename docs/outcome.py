@@ -28,21 +28,20 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 TABLES = ("numbers.csv", "claims.csv", "methods.csv")
-CHECKS, ORDERS, TEXTS = "claim_checks.csv", "order_and_level.csv", "texts.csv"
+CHECKS, TEXTS = "claim_checks.csv", "texts.csv"
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
-PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far they typically are from ours"></picture>"""  # noqa: E501
+PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and their median miss"></picture>"""  # noqa: E501
 GENTLY = (
-    "Least often free first. Excess: how much longer a free path is than the exact shortest one. "
-    "Excess and time are medians over the problems. The rounded path in the sixth column is as "
-    "smooth as the method's: its turns are no tighter than those of half of the method's free "
-    "paths without corners; a dash means that there are none. The method beats it in a problem if "
-    "its median path is shorter, or if its turns are wider than those of any rounded path."
+    "Least often free (without a collision) first. Excess over the exact shortest path, and time: "
+    "medians over the problems. The rounded path turns no tighter than half of the method's free "
+    "paths without corners do. The method beats it in a problem if its median path is shorter, or "
+    "has wider turns than any rounded path can have. A dash: all paths have corners."
 )
 ALONE = (
-    "The row of the rounded shortest path has the turning radius that it takes if none is asked; "
-    "where no arc fits, it keeps a corner."
+    "The row of the rounded shortest path, which is not compared with itself, has the turning "
+    "radius that it takes if none is asked; where no arc fits, it keeps a corner."
 )
 TESTED = (
     "Most claims are tested by several comparisons, such as one for each map. By default: as we "
@@ -53,10 +52,8 @@ OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
     "that the paper is wrong."
 )
-RANGE = (
-    "Our range: our program repeats the paper's whole experiment many times; 95 % of the results "
-    "lie in it."
-)
+RANGE = "Our range holds 95 % of the results if our program repeats the paper's experiment."
+
 LAID = (
     f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
     "so it does not count. Impossible: no runs give it, such as mean ranks that do not add up. "
@@ -64,7 +61,7 @@ LAID = (
     "paper is wrong, because it does not print all that its numbers depend on."
 )
 MARKS = ("\\*", "†", "‡", "§")
-"""Beside printed numbers that prove nothing of the paper, one for each reason."""
+"""Beside printed numbers that prove nothing about the paper, one for each reason."""
 
 IDENTIFIED = (
     "Some printed lengths equal lengths that can be calculated without any run: those of paths "
@@ -94,7 +91,7 @@ def main() -> None:
         key: {
             name: (study.tables[name].title, study.tables[name].index, bool(table.identify))
             for name, table in study.find_tables_of_runs().items()
-            if table.published and table.printed
+            if table.published
         }
         for key, study in studies.items()
     }
@@ -142,7 +139,7 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
-    for name in ("numbers.csv", "methods.csv", ORDERS):
+    for name in ("numbers.csv", "methods.csv"):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in studies:
@@ -207,19 +204,19 @@ def build_paper_page(
 
 
 def mark_worthless(numbers: pd.DataFrame) -> tuple[list[str], list[str]]:
-    """Return sentences on why numbers of a table prove nothing of the paper, and the mark of each
-    number (n,), empty if it has none.
+    """Return sentences on why numbers of a table prove nothing about the paper, and the mark of
+    each number (n,), empty if it has none.
 
     If all have the same reason, the sentence alone says so. numbers: n rows with their reason.
 
-    >>> mark_worthless(pd.DataFrame({"reason": ["the map is ours", None]}))
-    (['\\\\* proves nothing of the paper: the map is ours.'], ['\\\\*', ''])
+    >>> mark_worthless(pd.DataFrame({"reason": ["no exact map is printed", None]}))
+    (['\\\\* proves nothing about the paper: no exact map is printed.'], ['\\\\*', ''])
     """
     reasons = dict(zip(numbers["reason"].dropna().unique(), MARKS))
     if reasons and numbers["reason"].nunique(dropna=False) == 1:
         (reason,) = reasons
-        return [f"These numbers prove nothing of the paper: {reason}."], [""] * len(numbers)
-    told = [f"{mark} proves nothing of the paper: {reason}." for reason, mark in reasons.items()]
+        return [f"These numbers prove nothing about the paper: {reason}."], [""] * len(numbers)
+    told = [f"{mark} proves nothing about the paper: {reason}." for reason, mark in reasons.items()]
     return [" ".join(told)] if told else [], [*numbers["reason"].map(reasons).fillna("")]
 
 
@@ -241,7 +238,7 @@ def describe_where_or_why(claim: Mapping[str, Any]) -> str:
         words = {"supported": "everywhere: ", "contradicted": "nowhere: ", "no effect": "nowhere: "}
         places = f"{words.get(claim['verdict'], '')}{claim['holds']} comparisons"
     else:
-        places = f"in {claim['holds']} comparisons: {places}"
+        places = f"{claim['holds']} comparisons. {places}"
     ours = re.search(r"Ours: (.*?)\.(?: |$)", reason)
     return f"{places}; our criterion: {ours[1]}" if ours else places
 
@@ -355,16 +352,16 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     others = rows[rows["adds"] > 0]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and takes {times[0]}; the papers' methods take {times[1]}. "
+        f"and takes {times[0]} (the papers' methods: {times[1]}). "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
-        "with smooth paths and no free straight line, the paper's method is better in no problem: "
-        "never shorter with turns as wide, and never with wider turns"
+        "with smooth paths and a blocked straight line, the paper's method is ahead in no problem: "
+        "neither is its path shorter than a rounded one as smooth, nor are its turns wider"
     )
     better = " and ".join(
         f"{each.adds:.0f} of {each.both:.0f} problems ({format_name(each.study)}, {each.family})"
         for each in others.itertuples()
     )
-    return f"{told}. It is better in {better}." if better else f"{told}."
+    return f"{told}. It is ahead in {better}." if better else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:

@@ -152,11 +152,6 @@ def results(folder: Path) -> Parts:
         found[kind or "problems", name] = _plain(pd.read_parquet(file))
     for name in ("claims", "claim_checks"):
         table = pd.read_csv(folder / f"{name}.csv")
-        # Whether seconds disagree with counted work is no property of the code.
-        table["reason"] = [
-            [part for part in reason.rstrip(".").lower().split(". ") if "seconds" not in part]
-            for reason in table["reason"].fillna("")
-        ]
         found["claims", name] = table[~table["timed"]]
     return found
 

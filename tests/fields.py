@@ -23,6 +23,10 @@ STUDIES = File(__file__).resolve().parents[1] / "config" / "studies"
 BENCHMARK_MAPS = STUDIES / "elhoseny2017" / "workspaces"
 CELLS = STUDIES / "song2016" / "workspaces" / "figure2.txt"
 
+# Circles (x, y, radius) of one size and of three sizes, between the ends of `among_circles`.
+EQUAL = ((1.5, 4.5, 1.2), (4.0, 3.0, 1.2), (1.2, 1.5, 1.2))
+PUBLIC = ((1.5, 4.5, 1.5), (4.0, 3.0, 1.0), (1.2, 1.5, 0.8))
+
 
 def benchmark(name: str) -> tuple[Problem, float]:
     """One of these maps with its own ends, and the length of the shortest path that it states."""

@@ -8,7 +8,6 @@ import checks_of_claims
 import pandas as pd
 from pivots import pivot_of
 
-from bezierplan.analysis.columns import COLUMNS_OF
 from bezierplan.figures.caption import Caption, CaptionClaim
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
@@ -30,12 +29,10 @@ NUMBERS = [
     {"method": "a", "metric": "length"},
     {"method": "b", "metric": "length", "position": "above"}
     | {"value_ours": 14.0, "value_ours_scaled": 14.0},
-    {"method": "a", "metric": "objective", "wide": True, "reason": "the map is ours"},
-    {"method": "c", "metric": "length", "position": None}
-    | {"primary": False, "value_published": None},
+    {"method": "a", "metric": "objective", "wide": True, "reason": "no exact map is printed"},
 ]
 
-CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "own_criterion": False}
+CLAIM = {"study": "one", "variant": "metric=length", "primary": True}
 CLAIM |= {"main": False, "readings": "", "place": "IV, Table I", "holds": "1 of 2"}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
@@ -48,7 +45,7 @@ CLAIMS = [
         ("C2", "contradicted", False),
         ("C3", "undecided", True),
     )
-    for more in ({"own_criterion": identity == "C2"}, OTHER | {"verdict": "contradicted"})
+    for more in ({}, OTHER | {"verdict": "contradicted"})
 ]
 
 CHECK = {"variant": "metric=length", "check": 1, "primary": True, "decisive": True, "test": "lower"}
@@ -58,18 +55,16 @@ CHECK |= {
     "unit": "unit",
     "place": json.dumps({"problem": "p"}),
 }
-LEVEL = {
-    "study": "one",
-    "table": "table1",
-    "place": json.dumps({"problem": HOSTILE}),
-    "metric": "length",
-}
-LEVEL |= {"quantity": "level", "printed": 10.5, "position": "inside"}
-ORDER = LEVEL | {"quantity": "order", "printed": -0.5, "position": "below"}
-ORDER |= {"low95_predicted": 0, "high95_predicted": 1}
 CHECK |= {"group": "b", "relation": "lower than", "other": "c", "together": None}
 CHECK |= {"mark": "+", "mark_family": "+", "effect": -1.0}
-CHECK |= {"low95": -2.0, "high95": -0.2, "margin": 0.5, "effect_published": -2.0, "counted": None}
+CHECK |= {
+    "scale": "relative",
+    "low95": -2.0,
+    "high95": -0.2,
+    "margin": 0.5,
+    "effect_published": -2.0,
+    "counted": None,
+}
 OPEN = {"decisive": False, "mark": "?", "mark_family": "?", "effect": 0.4, "low95": None}
 LOWER = {"test": "lower", "experiment": "e", "metric": "length", "groups": ["b"], "than": ["c"]}
 LOWER |= {"margin": 0.5, "direction": "lower"}
@@ -107,13 +102,12 @@ def job() -> PageJob:
         repeats=[2, 3],
         tables={
             "table1": (caption(HOSTILE, HOSTILE, "C1", "C2"), table),
-            "more": (caption("more", ""), table.but(extends="table1")),
+            "more": (caption("more", ""), table.but(published=None)),
             "listed": (caption("a list", ""), SimpleNamespace()),
         },
         figures={"figure1": caption("Lengths", HOSTILE)},
         assumptions=[OPEN_DETAIL],
         files=["claims", "claim_checks", "audit"],
-        experiments={},
         changes=[],
         answer=("One fails", HOSTILE),
     )
@@ -121,7 +115,7 @@ def job() -> PageJob:
 
 
 def page(folder: Path) -> SimpleNamespace:
-    """The page, from files that are written to a folder; with three runs and two drives."""
+    """The page, from files that are written to a folder."""
     for tree in ("paper", "beyond"):
         (folder / "one" / tree).mkdir(parents=True, exist_ok=True)
     numbers = pd.DataFrame([row | NUMBER | row for row in NUMBERS])
@@ -140,10 +134,7 @@ def page(folder: Path) -> SimpleNamespace:
             table_row=[0, 1, 0], table_column=[0, 0, 1], as_printed="10.51"
         ),
         "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
-        "one/paper/table1.order_and_level": pd.DataFrame(
-            [LEVEL, ORDER], columns=COLUMNS_OF["order_and_level"]
-        ),
-        "one/beyond/more.comparison": numbers,
+        "one/beyond/more": laid,
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),
         "claims": claims,
@@ -161,58 +152,4 @@ def page(folder: Path) -> SimpleNamespace:
         "Lengths.\n(a) run one/first/p/b/0.\n(a) lowest mean: b.\n"
     )
     summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "methods")]
-    made = build.gather_content(job(), folder, summary)
-    made.data |= viewed()
-    study = made.data["studies"]["one"]
-    study["shown"] = made.studies["one"].shown = shown()
-    return made
-
-
-def shown() -> list[dict]:
-    """On a room; and in worlds that move, a drive among circles and a failed one among cells."""
-    given = {"problem": "p", "method": "a", "count": 1, "feasible": 1, "gap": 0.1, "failed": []}
-    given |= dict.fromkeys(("best", "median", "worst"))
-    first = {f: f"one/first/p/a/{n}" for n, f in enumerate(("best", "worst"))}
-    first |= {"count": 3, "feasible": 2, "median": first["best"], "failed": ["one/first/p/a/2"]}
-    return [
-        given | {"experiment": "first"} | first,
-        given | {"experiment": "circles", "best": "one/circles/p/a/0"},
-        given | {"experiment": "cells", "feasible": 0, "gap": None, "failed": ["one/cells/p/a/0"]},
-    ]
-
-
-def viewed() -> dict[str, dict]:
-    """Runs, problems and workspaces."""
-    run = {"problem": "one/first/p", "feasible": True, "claimed": True, "length": 9.5}
-    run |= {"clearance": 0.1, "depth": 0.0, "collision": None, "evaluations": 100, "steps": None}
-    run |= {"stop": "generations", "curve": "bezier", "path": [0.5, 0.5, 2.0, 1.5, 3.5, 2.5]}
-    run |= {"control": [0.5, 0.5, 3.5, 2.5], "history": [(0, 20.0), (3, 9.5)]}
-    failed = {"feasible": False, "depth": 0.4, "collision": (2.0, 1.5)}
-    # Two units to the right and one up, in three and a half steps, the first of which is waiting.
-    drive = {"path": [0.5, 0.5, 2.5, 0.5, 2.5, 1.0], "control": [], "stop": "arrived"}
-    drive |= {"steps": 3.5, "driven": [0.0, 0.0, 1.0, 2.0, 2.5], "collision_step": None}
-    struck = failed | {"collision": (1.5, 0.5), "collision_step": 2.0}
-    room = {"workspace": "one/first/p", "world": None, "bound": 4.13}
-    room |= {"start": (0.5, 0.5), "target": (3.5, 2.5), "bound_path": [0.5, 0.5, 1, 2, 3.5, 2.5]}
-    # Reflected at x = 3.5 after half a step.
-    circles = {"walls": [0.5, 3.5, 0.5, 2.5], "circles": [[3.0, 1.0, 1.0, 0.0, 0.25]]}
-    cells = {"circles": [], "moments": [2.0], "changed": [[5, 11]]}
-    kind = {"unit": "unit", "bounds": [0, 4, 0, 3]}
-    return {
-        "runs": {
-            "one/first/p/a/0": run,
-            "one/first/p/a/1": run,
-            "one/first/p/a/2": run | failed,
-            "one/circles/p/a/0": run | drive | {"problem": "one/circles/p"},
-            "one/cells/p/a/0": run | drive | struck | {"problem": "one/cells/p"},
-        },
-        "problems": {
-            "one/first/p": room,
-            "one/circles/p": room | {"workspace": "one/circles/p", "world": circles},
-            "one/cells/p": room | {"world": cells},
-        },
-        "workspaces": {
-            "one/first/p": kind | {"kind": "grid", "cell": 1, "rows": ["....", ".##.", "...."]},
-            "one/circles/p": kind | {"kind": "circles", "circles": [[3.0, 1.0, 0.25]]},
-        },
-    }
+    return build.gather_content(job(), folder, summary)

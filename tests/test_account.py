@@ -262,7 +262,11 @@ EDITS = [
     (f"{SRC}geometry/region.py", CODE, True),
     (f"{SRC}analysis/claims/kinds/lower.py", CODE, True),
     (f"{SRC}analysis/claims/kinds/untestable.py", CODE, False),
-    (f"{SRC}analysis/jobs.py", put("if self.spec.printed:", "if 1 and self.spec.printed:"), True),
+    (
+        f"{SRC}analysis/jobs.py",
+        put("published is not None:", "None is not published:"),
+        True,
+    ),
     (f"{SRC}analysis/jobs.py", put('"""Make the table and', '"""Make a table and'), False),
     (f"{SRC}figures/panels/own.py", CODE, True),
     (f"{SRC}figures/panels/boxes.py", CODE, False),

@@ -44,18 +44,11 @@ def test_what_is_no_method_is_told(method, told):
         bp.plan(PROBLEM, method)
 
 
-@pytest.mark.parametrize(
-    ("source", "told"),
-    [
-        ("def plan(:\n", r"SyntaxError: .*line 1"),
-        ("\nimport no_such_library\n", r"line 2 of .*: ModuleNotFoundError"),
-        ("x = 1\n", "no function plan"),
-    ],
-)
-def test_a_file_that_is_no_planner_is_told(source, told, tmp_path):
+def test_a_file_that_is_no_planner_is_told(tmp_path):
+    """What else it may be is in `test_study_faults`."""
     file = tmp_path / "broken.py"
-    file.write_text(source)
-    with pytest.raises(ValueError, match=f"^method: {file}: {told}"):
+    file.write_text("def plan(:\n")
+    with pytest.raises(ValueError, match=f"^method: {file}: SyntaxError: .*line 1"):
         bp.plan(PROBLEM, str(file))
 
 
@@ -110,17 +103,16 @@ def test_points_of_a_path_may_be_whole_or_listed():
 
 
 @pytest.mark.parametrize(
-    ("path", "error", "told"),
+    ("path", "told"),
     [
-        (None, ValueError, "path: expected a Path"),
-        (bp.Path("polyline", np.zeros((3, 3))), ValueError, r"path: .*\(n, 2\)"),
-        (bp.Path("polyline", np.zeros((3, 2), complex)), ValueError, "path: expected a Path"),
-        (bp.Path("bezier", np.ones((100, 2))), ValueError, "path: points: 100; expected at most"),
-        (bp.Path("bow", np.ones((3, 2))), ValueError, "path: curve: 'bow'; expected one of"),
+        (None, "expected a Path"),
+        (bp.Path("polyline", np.zeros((3, 2), complex)), "expected a Path"),
+        (bp.Path("bow", np.ones((3, 2))), "curve: 'bow'; expected one of"),
     ],
 )
-def test_a_path_that_is_none_is_told(path, error, told):
-    with pytest.raises(error, match=f"^{told}"):
+def test_a_path_that_is_none_is_told(path, told):
+    """What else may be wrong in one, `test_answer` asks of planners."""
+    with pytest.raises(ValueError, match=f"^path: {told}"):
         bp.check(PROBLEM, path)
 
 
@@ -165,7 +157,6 @@ def polygon(*rings):
         (circles([(0.0, 0.0)], [1.0, 2.0]), "centres: an array"),
         (circles([(0.0, 0.0)], [1.0], (5.0, -5.0, -5.0, 5.0)), "bounds: .* low below high"),
         (polygon(SQUARE[:2]), "obstacles: 0: A linearring"),
-        (polygon(SQUARE[[0, 2, 1, 3]]), "obstacles: 0: Self-intersection"),
         (polygon(SQUARE, 3 * SQUARE), "obstacles: 0: Hole lies outside"),
         (polygon(SQUARE * [1, np.inf]), "obstacles: 0: -?inf is not a coordinate"),
         (bp.Grid(np.zeros((4, 4), bool), -1.0, "m"), "cell: -1"),

@@ -205,45 +205,6 @@ def test_an_order_that_must_be_kept():
     )
 
 
-# Decimals
-
-
-def numbers_of(texts):
-    return audited(*((str(k), "cpu_s", "mean", text) for k, text in enumerate(texts)))
-
-
-def test_invented_decimals_are_found_and_others_are_not():
-    drawn = np.random.default_rng(5).uniform(1, 9, 60)
-    rule = "equally likely"
-    assert marks(numbers_of([f"{each:.2f}" for each in drawn]), rule) == [True]
-    assert marks(numbers_of([f"{each:.1f}7" for each in drawn]), rule) == [False]
-    assert marks(numbers_of([f"{each:.2f}" for each in drawn[:14]]), rule) == [], "too few"
-    assert marks(numbers_of([f"{each:.0f}.5" for each in drawn * 5]), rule) == [False]
-    assert marks(numbers_of([f"{4 + each / 100:.1f}" for each in drawn]), rule) == [], "too near"
-
-
-def test_decimals_of_means_of_whole_numbers_do_not_count():
-    """Those of ten have one decimal."""
-    means = np.random.default_rng(6).integers(10, 900, 60) / 10
-    cells = ((f"{k}", "evaluations", "mean", f"{each:.2f}") for k, each in enumerate(means))
-    assert marks(audited(*cells), "equally likely") == []
-
-
-def test_numbers_printed_twice_count_once():
-    numbers = table(*((str(k), "cpu_s", "mean", f"{k / 7 + 1:.2f}") for k in range(12)))
-    names = ("table1", "table2")
-    rows = audit.check_any_paper(dict.fromkeys(names, numbers), dict.fromkeys(names, spec()))
-    assert marks(rows, "equally likely") == []
-
-
-def test_decimals_of_ma2020_are_not_equally_likely():
-    tables = {name: read(f"ma2020/published/{name}.csv") for name in ("table1", "table2")}
-    (row,) = audit.check_digits(tables)
-    assert row["place"] == "272 decimals of 68 numbers"
-    assert "1 36 13 26 60 16 27 45 25 23, by chance 27.2 each" in row["arithmetic"]
-    assert "chi-square 92.2, p = 5.9e-16" in row["arithmetic"]
-
-
 # What the numbers of a whole table say
 
 
@@ -278,10 +239,7 @@ def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
         ("29.94", 29.9451, False),
         ("30", 30.49, True),
         ("30", 30.51, False),
-        ("30.0", 30.049, True),
         ("30.0", 30.051, False),
-        ("30.00", 30.0049, True),
-        ("30.00", 30.0051, False),
         ("31", 30.0, True),
     ],
 )

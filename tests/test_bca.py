@@ -3,7 +3,9 @@ operators, degenerate cases, settings.
 """
 
 import math
+from functools import partial
 
+import fields
 import numpy as np
 import pytest
 from hypothesis import given
@@ -19,13 +21,8 @@ from bezierplan.workspaces.problem import Problem
 FEW = {"population": 20, "generations": 10}
 OPEN = Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell")
 STRAIGHT = 20 * math.sqrt(2)
+random_grid = partial(fields.random_grid, shape=(20, 20), share=0.15)
 BLOCK = from_lines(["....", ".##.", ".##.", "...."], 1.0, "cell")
-
-
-def random_grid(seed, share=0.15):
-    occupied = np.random.default_rng(seed).random((20, 20)) < share
-    occupied[:2, :2] = occupied[-2:, -2:] = False
-    return Grid(occupied, 1.0, "cell")
 
 
 def plan(grid=OPEN, seed=0, **changes):
@@ -77,7 +74,7 @@ def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
     st.sampled_from(["collision_free", "clearance"]),
 )
 def test_cost_of_the_literal_forms(seed, fitness, feasible):
-    grid = random_grid(seed, 0.05)
+    grid = random_grid(seed, share=0.05)
     found = plan(grid, seed=seed, fitness=fitness, fitness_feasible=feasible, generations=4)
     length, _, clearance = reference(found.path, grid, 201)
     free = found.extra["bad_samples"] == 0 and (feasible == "collision_free" or clearance >= 0.25)
@@ -135,7 +132,7 @@ def test_sorted_start_follows_the_way_to_the_target():
 
 
 def test_feasible_start():
-    grid = random_grid(2, 0.05)
+    grid = random_grid(2, share=0.05)
     assert not plan(grid, population=2, generations=0, seed=1).claimed_feasible
     assert plan(grid, population=2, generations=0, seed=1, initial="feasible").claimed_feasible
 
@@ -164,7 +161,7 @@ def test_an_empty_map_has_no_safety_term():
 
 def test_no_safety_distance_is_never_undercut():
     """Then BCA-Q is BCA on another scale, also for a path that collides."""
-    grid = random_grid(4, 0.3)
+    grid = random_grid(4, share=0.3)
     bca_q, shortest = (
         plan(grid, fitness=fitness, safety_distance=0, generations=30)
         for fitness in ("repaired", "length")

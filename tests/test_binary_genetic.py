@@ -92,19 +92,6 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve, 
     assert found.claimed_feasible == (bad == 0)
 
 
-@pytest.mark.parametrize("curve", curves.B_SPLINES)
-def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
-    """The compiled search against its plain Python with every stretch measured anew."""
-    compiled = plan(
-        random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4
-    )
-    monkeypatch.setattr(binary_genetic, "is_same", lambda *_: False)
-    monkeypatch.setattr(binary_genetic, "_search", binary_genetic._search.py_func)
-    plain = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
-    assert np.array_equal(compiled.history, plain.history)
-    assert np.array_equal(compiled.path.points, plain.path.points)
-
-
 @pytest.mark.parametrize("penalty", [0.0, 10.0])
 def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
     """Of the same runs without elitism: the best so far is the least of the generations."""

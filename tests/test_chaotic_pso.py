@@ -4,6 +4,7 @@ swarms, bad input.
 
 import math
 
+import fields
 import numpy as np
 import pytest
 from fields import among_circles as problem
@@ -20,8 +21,7 @@ from bezierplan.workspaces.problem import Problem
 
 SETTINGS = study("tharwat2018").resolve_settings("pso")
 
-EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])
-PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
+EQUAL, PUBLIC = problem(fields.EQUAL), problem(fields.PUBLIC)
 
 
 def plan(where=EQUAL, seed=0, **changes):

@@ -10,7 +10,6 @@ import pytest
 from test_exact_properties import elevated
 
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.curves import bernstein
 from bezierplan.geometry.region import build_region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -218,24 +217,6 @@ def test_clearance_is_the_least_distance_to_the_blocked_region(blocked, pieces, 
 def test_no_free_space_at_all():
     assert check(bezier("(5,5)(6,6)"), polygons("(0,0)(10,0)(10,10)(0,10)")).collision_at == 0
     assert not check(bezier("(1,1)(2,2)"), cells(4, (0, 0, 4, 4))).feasible
-
-
-SAMPLES = 1000
-
-
-@pytest.mark.parametrize("kind", ["circles", "cells", "polygons"])
-def test_an_obstacle_between_two_samples_is_found(kind):
-    x = 10 * 500.5 / SAMPLES
-    thin = {
-        "circles": lambda: circles((x, 5, 1e-3), bounds=(0.0, 10.0, 0.0, 10.0)),
-        "cells": lambda: build_region(Grid(np.arange(5000)[None] == round(x * 500) - 1, 2e-3, "m")),
-        "polygons": lambda: polygons(f"({x - 1e-3},0)({x + 1e-3},0)({x + 1e-3},9)({x - 1e-3},9)"),
-    }[kind]()
-    y = 1e-3 if kind == "cells" else 5.0
-    pieces = bezier(f"(0,{y})(3,{y})(10,{y})")
-    samples = bernstein(2, np.linspace(0, 1, SAMPLES + 1)) @ pieces[0]
-    assert np.all(np.abs(samples[:, 0] - x) > 1e-3)
-    assert not check(pieces, thin).feasible
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.1e5])

@@ -1,5 +1,5 @@
-"""The profiles for clusters: the README's lines on a Slurm of one node, and the generic profile on
-a stand-in for qsub.
+"""The profiles for clusters: the tutorial's lines on a Slurm of one node, and the generic profile
+on a stand-in for qsub.
 
 Both must give the bits of a run without a cluster. The copy of the tree has an environment of its
 own, to which `make cluster` can add.
@@ -24,8 +24,8 @@ pytestmark = pytest.mark.rare
 
 ROOT = Path(__file__).parents[1]
 (LINES,) = re.findall(
-    r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$",
-    (ROOT / "README.md").read_text(),
+    r"^# From a laptop to a cluster$.*?^```sh\n(.*?)^```$",
+    (ROOT / "docs" / "tutorials" / "cluster.md").read_text(),
     flags=re.M | re.S,
 )
 COMMANDS = [re.split(r"\s+# ", line)[0] for line in LINES.splitlines()]
@@ -102,8 +102,8 @@ def local():
 
 
 def test_slurm_gives_the_same_bits(tree, local, tmp_path_factory):
-    """One figure with what it needs, for each job costs two starts of Snakemake; the README's lines
-    as dry runs.
+    """One figure with what it needs, for each job costs two starts of Snakemake; the tutorial's
+    lines as dry runs.
     """
     # Slurm comes as Debian's packages, not from PyPI, and only root can start its daemons; a
     # machine that has a Slurm keeps its own. Continuous integration installs it (`.ci/run`).

@@ -232,24 +232,9 @@ CHECK = (
 # Settings, what is told of them, and perhaps a text of the planner and another in its place.
 FAULTS = {
     "missing setting": ({}, "settings are missing: evaluations: a whole number at least 1"),
-    "several missing settings": (
-        {"quick": True},
-        "missing: evaluations: a whole number at least 1; "
-        "share: a number from 0 to 1; rule: one of a, b",
-        "Range(1)]",
-        'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
-    ),
     "unknown setting": (
         {"evaluation": 20},
         "settings: evaluation: unknown; did you mean evaluations?",
-    ),
-    "wrong type": (
-        {"evaluations": "many"},
-        "settings: evaluations: 'many'; expected a whole number",
-    ),
-    "out of range": (
-        {"evaluations": 0},
-        "settings: evaluations: 0; expected a whole number at least 1",
     ),
     "settings that do not fit": (
         {"evaluations": 20},

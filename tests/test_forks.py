@@ -87,20 +87,17 @@ def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
     assert not (tmp_path / "victim").read_text()
 
 
-def test_script_runs_in_the_folder_of_its_workflow(started, tmp_path, monkeypatch):
+def test_script_gets_its_object_and_the_folder_of_its_workflow_and_no_input(
+    started, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
-    assert started.run_in_fork("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
-    assert (tmp_path / "told").read_text() == str(tmp_path)
-
-
-def test_script_gets_its_object_and_no_input(started, tmp_path):
     told = tmp_path / "told"
     source = (
-        "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, "
-        "snakemake.params, sys.stdin.read())))"
+        "import os, sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, "
+        "snakemake.params, sys.stdin.read(), os.getcwd())))"
     )
     assert started.run_in_fork("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
-    assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
+    assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, "", str(tmp_path)))
 
 
 def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_job_waits(

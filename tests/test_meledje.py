@@ -77,15 +77,7 @@ DRIVEN = {
 def cell_path(problem, state):
     """The shortest path over centres of free cells, as a planner."""
     found = shortest_paths.centre_path(problem)
-    return Plan(
-        Path("polyline", found.points),
-        found.length,
-        math.isfinite(found.length),
-        1,
-        np.array([found.length]),
-        "exact",
-        {},
-    ), state
+    return Plan.of_one(Path("polyline", found.points), found.length, "exact"), state
 
 
 @pytest.mark.parametrize(("environment", "percent"), DRIVEN)

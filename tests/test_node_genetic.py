@@ -6,16 +6,17 @@ import itertools
 import math
 from collections import Counter
 from dataclasses import replace
-from functools import partial
-from pathlib import Path as File
+from functools import cache, partial
 
 import fields
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
-from studies import planned, study
+from studies import planned, problem_of, study
+from test_exact_properties import shapes_of
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
@@ -24,7 +25,6 @@ from bezierplan.geometry.shortest_paths import centre_path
 from bezierplan.planners import node_genetic
 from bezierplan.planners.parts.node_mutation import mutate
 from bezierplan.planners.parts.settings import fill_settings
-from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.ground import (
@@ -38,7 +38,6 @@ from bezierplan.workspaces.ground import (
 )
 from bezierplan.workspaces.problem import Problem
 
-MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
 # Least energies from the lower left to the upper right corner, by a program of its own.
 OPTIMA = {
     "env1_initial": 26.268314,
@@ -53,10 +52,6 @@ OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
 
-def grid_of(name):
-    return files.load({"kind": "grid", "file": f"{name}.txt", "cell": 1.0, "unit": "cell"}, MAPS)
-
-
 def problem(grid, start=0, target=None):
     return Problem(
         "test",
@@ -66,7 +61,7 @@ def problem(grid, start=0, target=None):
     )
 
 
-ENVIRONMENTS = {name: problem(grid_of(name)) for name in OPTIMA}
+ENVIRONMENTS = {name: problem_of("meledje", name) for name in OPTIMA}
 
 
 def cells_of(path, grid):
@@ -75,31 +70,12 @@ def cells_of(path, grid):
     return row * grid.occupied.shape[1] + column
 
 
-def meets(one, other, cell, columns):
-    """Whether the edge between two cells passes through the interior of a cell, by corners on both
-    sides, in half cells.
-    """
-    (x0, y0), (x1, y1) = ((2 * (c % columns) + 1, 2 * (c // columns) + 1) for c in (one, other))
-    left, low = 2 * (cell % columns), 2 * (cell // columns)
-    if not (
-        min(x0, x1) < left + 2
-        and max(x0, x1) > left
-        and min(y0, y1) < low + 2
-        and max(y0, y1) > low
-    ):
-        return False
-    if one == other:
-        return one == cell
-    sides = [
-        (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
-        for x, y in itertools.product((left, left + 2), (low, low + 2))
-    ]
-    return min(sides) < 0 < max(sides)
-
-
+@cache
 def met(one, other, grid):
-    occupied = np.flatnonzero(grid.occupied).tolist()
-    return sum(meets(one, other, cell, grid.occupied.shape[1]) for cell in occupied)
+    """Of how many occupied cells the edge between two cells passes through the interior."""
+    edge = shapely.LineString([grid.centre(one), grid.centre(other)])
+    place = shapely.Point(grid.centre(one)) if one == other else edge
+    return shapely.relate_pattern(place, shapes_of(grid), "T********").sum()
 
 
 def length(one, other, columns):

@@ -24,7 +24,6 @@ def test_readme_shows_the_outcome_that_is_kept():
 
 def comparison(values, ours, methods=("plain", "other")):
     frame = {
-        "primary": True,
         "problem": "a",
         "method": methods,
         "metric": "length",
@@ -43,11 +42,6 @@ def comparison(values, ours, methods=("plain", "other")):
             "possible": True,
         }
     )
-
-
-def test_numbers_without_a_published_value_are_left_out():
-    table = comparison([1.0, float("nan")], [1.2, 1.2])
-    assert summary.list_numbers({("one", "table1"): table})["method"].tolist() == ["plain"]
 
 
 def counted(*tables):

@@ -74,7 +74,7 @@ tables:
     columns: [value, statistic], where: {method: [low, high]}, values: [
       {metric: bent, statistic: [min, mean, std], label: bent, decimals: 3},
       {metric: length, statistic: [max, mean], label: height, decimals: 1}]}
-  shapes_variants: {title: With variants, kind: pivot, extends: shapes, experiment: bends,
+  shapes_variants: {title: With variants, kind: pivot, experiment: bends,
     index: [method], columns: [value, statistic], values: [
       {metric: bent, statistic: [min, mean, std], label: bent, decimals: 3},
       {metric: length, statistic: [max, mean], label: height, decimals: 1}]}

@@ -5,6 +5,7 @@ cases.
 import itertools
 import math
 
+import fields
 import numpy as np
 import pytest
 from fields import among_circles as problem
@@ -14,7 +15,7 @@ from studies import planned
 from bezierplan.geometry import curves
 from bezierplan.planners import prm
 
-PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
+PUBLIC = problem(fields.PUBLIC)
 
 
 def plan(where=PUBLIC, seed=0, **changes):
@@ -84,26 +85,6 @@ def test_more_nodes_keep_those_of_fewer():
         # With links to all that is seen, every way over few nodes is one over more.
         lengths = [plan(seed=seed, nodes=nodes).objective for nodes in (10, 50, 200)]
         assert lengths[2] <= lengths[1] <= lengths[0]
-
-
-@pytest.mark.parametrize(
-    ("end", "seen"),
-    [
-        ((4, 0), False),
-        ((0.9, 0), True),
-        ((4, 2.4), True),
-        ((4, 2.2), False),
-        ((-4, 0), True),
-        ((0, 0), True),
-    ],
-    ids=["through", "before", "past", "grazing", "behind", "no way"],
-)
-def test_sight_is_exact(end, seen):
-    # From the origin a circle of radius 1 at (2, 0) hides all within 30 degrees beyond the tangent
-    # points.
-    assert prm._is_visible(
-        np.zeros((1, 2)), np.array([end], dtype=float), np.array([[2.0, 0.0]]), np.array([1.0])
-    ).tolist() == [seen]
 
 
 def test_touching_is_allowed():

@@ -97,10 +97,3 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
         drawn("walled", FIELD | {"radius": 0.15}, obstacles=60, side=40, target=[40, 40])
     with pytest.raises(ValueError, match="radius: no circle keeps"):
         drawn("covered", FIELD | {"radius": 1.5})
-
-
-def test_ends_outside_are_told():
-    with pytest.raises(
-        ValueError, match=r"target: \[101, 100\]: outside the map; expected x from -0.5 to 100.5"
-    ):
-        drawn(target=[101, 100])

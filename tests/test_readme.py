@@ -2,7 +2,7 @@
 song2016 alone.
 
 As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to
-hours. `test_cluster.py` executes those for a cluster.
+hours.
 """
 
 import functools
@@ -32,13 +32,7 @@ DRY = {
     "make test": "make -n test",
     "snakemake song2016": "snakemake -n song2016",
     "snakemake song2016_figure4": "snakemake -n song2016_figure4",
-    "snakemake song2016_table1": "snakemake -n song2016_table1",
     "snakemake song2016_beyond": "snakemake -n song2016_beyond",
-}
-ON_CLUSTER = {
-    "make cluster",
-    "snakemake smoke --workflow-profile profiles/slurm",
-    "snakemake extended --workflow-profile profiles/slurm",
 }
 # These read results, so they come last.
 LATE = [
@@ -50,7 +44,7 @@ ORDER = [command for command in COMMANDS if command not in LATE] + LATE
 
 
 def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
-    assert DRY.keys() | ON_CLUSTER <= set(COMMANDS)
+    assert DRY.keys() <= set(COMMANDS)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +82,7 @@ def executed(tree, command):
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("command", [command for command in ORDER if command not in ON_CLUSTER])
+@pytest.mark.parametrize("command", ORDER)
 def test_command_works_as_printed(tree, command):
     assert executed(tree, DRY.get(command, command)) or command.startswith(". ")
 

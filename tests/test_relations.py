@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from test_exact_properties import mapped
 
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
@@ -138,16 +139,7 @@ def test_a_map_elsewhere_or_in_another_unit_has_the_same_path(kind, by, scale):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_transposed_map_has_the_transposed_path(kind):
     for problem, _ in problems(kind, 6):
-        workspace = problem.workspace
-        if kind == "cells":
-            other = replace(workspace, occupied=np.ascontiguousarray(workspace.occupied.T))
-        elif kind == "circles":
-            other = replace(workspace, centres=workspace.centres[:, ::-1].copy())
-        else:
-            rings = tuple(
-                tuple(ring[:, ::-1].copy() for ring in rings) for rings in workspace.obstacles
-            )
-            other = replace(workspace, obstacles=rings)
+        other = mapped(problem.workspace, "diagonal")
         plan, again = (
             rounded(each, excess=0.01) for each in (problem, problem._replace(workspace=other))
         )

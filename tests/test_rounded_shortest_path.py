@@ -166,12 +166,6 @@ def test_path_ends_at_the_target_to_the_last_bit():
     assert_sound(problem, rounded(problem, 0.4))
 
 
-def test_start_is_target():
-    plan = rounded(one_corner()._replace(target=(0.0, 0.0)), 1.0)
-    assert plan.objective == 0.0
-    assert plan.claimed_feasible
-
-
 GAP = [".......", "...#...", "...#...", ".......", "...#...", "...#...", "......."]
 
 

@@ -6,8 +6,7 @@ from types import ModuleType
 import pytest
 from chunks import BENDS, DISC
 
-from bezierplan.analysis import results
-from bezierplan.running import execution, problems
+from bezierplan.running import execution
 from bezierplan.running.guard import interface, worker
 
 PLANNER = """
@@ -89,9 +88,6 @@ def test_repeats_count_as_one_where_they_are_equal_and_nothing_was_drawn(planner
     assert len({*map(str, runs["path_points"].to_pylist())}) == different
     told = f"run study/bends/*/bend: planner bend: {worker.ALIKE[drew]}\n"
     assert capsys.readouterr().err == (told if different == 1 else "")
-    bounds = problems.compute_bounds({"disc": DISC}, {}).to_pandas()
-    read = results.join_bounds(runs.to_pandas(), {"disc": DISC}, bounds).runs
-    assert (~results.is_repeated(read)).sum() == (6 if drew else different)
 
 
 def test_a_planner_that_draws_nothing_and_says_so_is_not_told_of_it(planner, capsys):

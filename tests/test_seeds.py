@@ -65,11 +65,6 @@ def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
     assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
 
 
-@pytest.mark.parametrize("seeds", ["own", "shared", "common"])
-def test_no_two_repeats_share_their_numbers(seeds):
-    assert len({first_number(seeds, repeat=repeat) for repeat in range(2500)}) == 2500
-
-
 PLANNER = """
 import numpy as np
 from bezierplan.planners import Path, Plan

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from fields import among_circles
+from fields import EQUAL, PUBLIC, among_circles
 from studies import FOLDER as STUDIES
 from studies import KEYS, arguments, drawing, problem_of, published
 from studies import study as shared
@@ -69,11 +69,7 @@ def test_gauss_above():
     assert high - low < 0.01
 
 
-# Three circles of one size, and of three sizes.
-WORLDS = {
-    "equal": among_circles([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]]),
-    "public": among_circles([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]]),
-}
+WORLDS = {"equal": among_circles(EQUAL), "public": among_circles(PUBLIC)}
 # Control points x, then y, and the fitness among both.
 FIXED = {
     "straight": ([1, 2, 3], [1.5, 3, 4.5], 118.766232, 95.050708),
@@ -318,18 +314,6 @@ def test_audit_of_tharwat2018():
     assert len(wrong) == 2 + 2 + 5 + 1 + 2 + 2
     (repeated,) = rows[rows["rule"].str.startswith("Table 5 has")]["printed"]
     assert repeated == 8
-
-
-@pytest.mark.parametrize(
-    ("table", "metric"),
-    [("table3", "objective"), ("table5", "collisions_c"), ("table6", "objective")],
-)
-def test_audit_sees_a_changed_number(table, metric):
-    numbers = published("tharwat2018")
-    before = faults(rules.check_rules(numbers))
-    changed = numbers[table].copy()
-    changed.loc[changed.index[changed["metric"] == metric][-1], "value"] = 7.0
-    assert len(faults(rules.check_rules(numbers | {table: changed})) - before) > 0
 
 
 def test_methods_of_tharwat2018():

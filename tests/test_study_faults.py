@@ -85,7 +85,7 @@ def test_a_file_of_a_study_that_nothing_reads_is_told(name, tmp_path):
     assert f"{name}: no file of a study; did you mean " in told(folder)
 
 
-@pytest.mark.parametrize("name", ["my study", "müller", "all", "song2016"])
+@pytest.mark.parametrize("name", ["my study", "müller", "2016", "x[1]", "all", "song2016"])
 def test_a_name_that_run_refuses_is_refused_by_check_study(name, tmp_path, capsys):
     shutil.copytree(DATA / "walks", tmp_path / name)
     said = refused(capsys, "check-study", tmp_path / name)

@@ -75,9 +75,6 @@ def test_panels_that_are_written_once_are_those_written_out():
     ]
     last = {"kind": "workspace", "workspace": "figure2"}
     once = panels(shared | {"where": {"method": "smooth"}, "each": each}, last)
-    assert [panel.plain() for panel in once] == [
-        panel.plain() for panel in panels(shared | first, shared | second, last)
-    ]
     assert [panel.plain() for panel in once] == [shared | first, shared | second, last]
     assert [panel.place for panel in once] == ["0: each: 0", "0: each: 1", "1"]
 

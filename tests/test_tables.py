@@ -91,15 +91,17 @@ def printed(metric: str, statistic: str, n: float, numbers: dict) -> pd.DataFram
 
 
 def pivot(ours: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
-    return tables.build_pivot(ours, pivot_of(spec), labels, with_texts())
+    texts = with_texts() if "published" in spec else None
+    return tables.build_pivot(ours, pivot_of(spec), labels, texts)
 
 
-def beside(ours: Results, spec: dict, printed: pd.DataFrame, **variants: str) -> pd.DataFrame:
-    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1", [], {})
+def beside(ours: Results, spec: dict, printed: pd.DataFrame) -> pd.DataFrame:
+    printed = printed if "as_printed" in printed else printed.assign(as_printed="10.00")
+    return comparison.compare(ours, pivot_of(spec), printed, "study/table1", [], {})
 
 
 def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
-    return beside(ours, spec, published(plain), faster="fast")
+    return beside(ours, spec, published(plain))
 
 
 def row(table: pd.DataFrame, *key: str) -> pd.Series:
@@ -139,7 +141,7 @@ def test_a_table_in_the_papers_form_shows_small_numbers_and_the_printed_ones_in_
     table = pivot(ours, spec, LABELS)
     assert list(table) == list(pivot(ours, SPEC, LABELS))[:-1], "no counts of runs"
     own = table["length: fast"]
-    assert own.str.fullmatch(r"0\.0+[1-9]\d+").all(), "two digits at least"
+    assert own.str.fullmatch(r"0\.0\d{3}").all(), "two digits of the smallest"
     assert own.str.len().nunique() == 1, "a column has one number of decimals"
     laid = in_cells(ours, spec, LABELS, with_texts())
     assert laid.index.equals(table.index)
@@ -153,7 +155,7 @@ def in_cells(
 ) -> pd.DataFrame:
     """Printed numbers in the cells of their table."""
     table = pivot(ours, spec, labels)
-    placed = beside(ours, spec, printed).dropna(subset="as_printed")
+    placed = beside(ours, spec, printed)
     return tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
 
 
@@ -204,7 +206,7 @@ def test_a_printed_number_that_no_cell_takes_is_an_error():
     with pytest.raises(ValueError, match=r"2 printed numbers .* 10.00 .*method fast, metric"):
         beside(ours, spec, printed)
     alone = spec | {"where": {"method": ["plain"]}}
-    assert len(beside(ours, alone, printed)) == 6, "others are not of this table"
+    assert len(beside(ours, alone, printed)) == 3, "others are not of this table"
 
 
 def test_a_deterministic_method_has_one_run_under_each_condition():
@@ -223,11 +225,13 @@ def test_a_deterministic_method_has_one_run_under_each_condition():
 def test_failed_runs_are_never_averaged():
     ours = results()
     feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    means = pivot(ours, of_values(("length", "mean")), {})
-    assert means.loc["long", "length: plain"] == f"{feasible.mean():.6f}"
+    table = pivot(ours, of_values(("length", ["mean", "max"])), {})
+    for name in ("mean", "max"):
+        assert table.loc["long", f"length: plain: {name}"] == f"{feasible.agg(name):.6f}"
     found = row(compare(ours), "long", "plain", "length")
-    assert found["n_ours"] == 16
-    assert found["value_ours"] == feasible.median()
+    assert (found["n_ours"], found["value_ours"]) == (16, feasible.median())
+    assert (found["share_feasible"], found["bound"], found["unit"]) == (0.8, 9.0, "m")
+    assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
 
 
 def test_count_stands_beside_what_leaves_failed_runs_out():
@@ -271,22 +275,6 @@ def test_no_runs_at_all():
     ours = results()
     ours = ours._replace(runs=ours.runs.iloc[:0])
     assert pivot(ours, SPEC, {}).empty
-    found = compare(ours)
-    assert found["value_published"].to_list() == [10.0, 1000.0, 10.0]
-    assert (found["n_ours"] == 0).all()
-
-
-def test_where_of_a_value_and_several_statistics():
-    ends = {"metric": "length", "statistic": ["min", "max"], "where": {"repeat": [1, 2]}}
-    spec = {"where": {"problem": "brief"}, "values": [ends]}
-    spec |= {"index": ["statistic"], "columns": ["method", "value"]}
-    ours = results()
-    table = pivot(ours, spec, {})
-    two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
-    assert table.index.to_list() == ["min", "max"]
-    assert table["plain: length"].to_list() == [f"{two.min():.6f}", f"{two.max():.6f}"]
-    # All of these runs have a path.
-    assert list(table) == ["fast: length", "faster: length", "plain: length"]
 
 
 def test_words_left_out_become_levels_where_needed():
@@ -317,55 +305,30 @@ def test_order_of_the_runs_never_changes_a_byte():
 
 def test_rows_do_not_depend_on_the_others():
     alone = compare(results(), spec=SPEC | {"where": {"problem": ["long"], "method": ["plain"]}})
-    pd.testing.assert_series_equal(
-        row(alone, "long", "plain", "length"),
-        row(compare(results()), "long", "plain", "length"),
-        check_names=False,
-    )
+    assert alone["n_ours"].gt(0).sum() == 1
+    one, among = (row(table, "long", "plain", "length") for table in (alone, compare(results())))
+    places = comparison.PLACES
+    pd.testing.assert_series_equal(one.drop(places), among.drop(places), check_names=False)
 
 
 def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,value_ours_scaled,"
         "low95_ours,high95_ours,low95_predicted,high95_predicted,position,wide,reason,possible,"
-        "share_feasible,bound,gap,primary"
+        "share_feasible,bound,gap,table_row,table_column,as_printed"
     )
 
 
 def test_rows_of_the_comparison():
+    """The printed numbers alone, in the order of the table's methods, and of its values in each;
+    statistics are named as in the paper.
+    """
     table = compare(results())
-    # Of each problem the table's methods, then the variant; of each of these the table's values.
-    assert table["problem"].to_list() == ["long"] * 6 + ["brief"] * 6
-    assert table["method"].to_list() == ["plain", "plain", "fast", "fast", "faster", "faster"] * 2
-    assert table["metric"].to_list() == ["evaluations", "length"] * 6
-
-
-OF_PRINTED = ["n_published", "value_published", "low95_predicted", "position"]
-
-
-def test_published_numbers_and_those_of_variants():
-    table = compare(results())
-    assert row(table, "long", "fast", "length")["value_published"] == 10
-    assert row(table, "long", "faster", "length")["value_published"] == 10
-    assert row(table, "long", "faster", "evaluations")["n_published"] == 20
-    empty = row(table, "brief", "plain", "length")
-    assert empty[OF_PRINTED].isna().all()
-    assert empty["low95_ours"] < empty["value_ours"] < empty["high95_ours"]
-
-
-def test_statistic_is_named_as_in_the_paper():
-    table = compare(results())
-    assert set(table.loc[table["metric"] == "length", "statistic"]) == {"unstated"}
-    assert set(table.loc[table["metric"] == "evaluations", "statistic"]) == {"median"}
-
-
-@pytest.mark.parametrize(
-    ("number", "position"), [(10.0, "inside"), (10.9, "above"), (8.1, "below")]
-)
-def test_wrong_published_number_is_flagged(number, position):
-    found = row(compare(results(), plain=number), "long", "plain", "length")
-    assert found["value_published"] == number
-    assert found["position"] == position
+    assert table[["problem", "method", "metric", "statistic"]].to_numpy().tolist() == [
+        ["long", "plain", "length", "unstated"],
+        ["long", "fast", "evaluations", "median"],
+        ["long", "fast", "length", "unstated"],
+    ]
 
 
 def test_seconds_of_another_machine_are_shown_but_not_judged():
@@ -375,14 +338,6 @@ def test_seconds_of_another_machine_are_shown_but_not_judged():
     found = row(beside(ours, of_values(("cpu_s", "mean")), given), "long", "plain", "cpu_s")
     assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
     assert found["position"] == comparison.NO_RANGE
-
-
-def test_shares_bound_and_gap():
-    ours = results()
-    found = row(compare(ours), "long", "plain", "length")
-    feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    assert (found["share_feasible"], found["bound"], found["unit"]) == (0.8, 9.0, "m")
-    assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
 
 
 def least(plain, fast=11.0, n=20, other=11.0):
@@ -417,20 +372,17 @@ def test_why_a_position_proves_nothing_stands_beside_it(
 ):
     values = [entry | {"defined": defined} for entry in SPEC["values"]]
     ours = results()._replace(runs=results().runs.assign(**changed))
-    for value in (10.0, 100.0):
-        before = row(compare(results(), plain=f"{value}"), "long", "plain", "length")
+    for value, position in ((8.1, "below"), (10.0, "inside"), (10.9, "above")):
         table = comparison.compare(
             ours,
             pivot_of(SPEC | {"values": values}),
-            published(f"{value}"),
-            {"faster": "fast"},
-            [],
+            published(value).assign(as_printed="10.00"),
             "study/table1",
             reconstructed,
             fitted,
         )
         found = row(table, "long", "plain", "length")
-        assert (found["reason"], found["position"]) == (reason, before["position"])
+        assert (found["reason"], found["position"]) == (reason, position)
 
 
 @pytest.mark.parametrize(
@@ -494,13 +446,6 @@ def test_published_file(tmp_path):
     assert table[["n", "value"]].isna().to_numpy().tolist() == [[True, False], [False, True]]
 
 
-def test_table_without_published_numbers():
-    table = beside(results(), SPEC, comparison.read_published(None, pivot_of(SPEC)))
-    assert len(table) == 8
-    assert table[OF_PRINTED].isna().all(axis=None)
-    assert table["value_ours"].notna().all()
-
-
 def described(given: dict) -> table_kinds.TableEntry:
     return table_kinds.TABLES[given["kind"]].model_validate({"title": "any"} | given)
 
@@ -551,11 +496,51 @@ def test_printed_ranks_that_no_runs_have_are_impossible():
     assert found[places].to_list() == [False, False, True, True]
 
 
-def test_rows_of_the_papers_interpretation_are_primary():
-    """A variant of a method is another interpretation, and so is another value of what the table's
-    `primary` names.
-    """
-    found = compare(results(), spec=SPEC | {"primary": {"problem": "long"}})
-    expected = (found["problem"] == "long") & (found["method"] != "faster")
-    assert found["primary"].tolist() == expected.tolist()
-    assert compare(results())["primary"].tolist() == (found["method"] != "faster").tolist()
+@pytest.mark.parametrize(
+    ("statistic", "published", "possible"),
+    [
+        *(("share", 1.0, True), ("share", 1.1, False), ("share", -0.1, False)),
+        *(("std", 0.0, True), ("std", -0.1, False), ("std", 99.0, True)),
+        *(("mean", 5.0, True), ("mean", 4.96, True), ("mean", 4.94, False), ("mean", 9.06, False)),
+    ],
+)
+def test_a_printed_number_is_possible_within_the_range_of_its_statistic(
+    statistic, published, possible
+):
+    """Of twenty runs with values from 5 to 9; the mean is printed with one decimal."""
+    row = {"statistic": statistic, "value_published": published, "least": 5.0, "most": 9.0}
+    row |= {"decimals": 1 if statistic == "mean" else 6, "bound": 0.0, "metric": "objective"}
+    assert comparison.is_possible(row, 20) == possible
+
+
+@pytest.mark.parametrize(
+    ("found", "ours", "decimals", "shown", "below", "above"),
+    [
+        ((14.6, 31.4), 20.0, 0, (15, 31), 14, 32),
+        ((14.5, 31.5), 20.0, 0, (14, 32), 13, 33),  # what lies half a unit away belongs to it
+        ((10.0, 10.0), 10.0, 3, (9.99, 10.01), 9.989, 10.011),  # 0.1 % of ours to each side
+        ((32.3848, 32.3848), 32.3848, 4, (32.3524, 32.4172), 32.35, 32.42),
+        ((-math.inf, 3.0), 2.0, 1, (-math.inf, 3.0), -math.inf, 3.1),
+        ((0.035, 0.145), 0.1, 2, (0.03, 0.15), 0.02, 0.16),  # whatever binary fractions say
+    ],
+)
+def test_a_printed_number_has_a_position(found, ours, decimals, shown, below, above):
+    low, high = comparison.round_range(found, ours, decimals)
+    assert (low, high) == pytest.approx(shown)
+    assert comparison.find_position(above, low, high) == "above"
+    assert (
+        comparison.find_position(low, low, high)
+        == comparison.find_position(high, low, high)
+        == "inside"
+    )
+    assert below == low or comparison.find_position(below, low, high) == "below"
+    assert comparison.find_position(ours, math.nan, math.nan) == comparison.NO_RANGE
+
+
+@pytest.mark.parametrize(
+    ("printed", "size", "expected"),
+    [(10.5, 10, True), (10.6, 10, False), (-0.5, 10, True), (-0.6, 10, False), (1e6, None, True)],
+)
+def test_a_count_can_be_none_to_all_of_the_runs_but_for_its_rounding(printed, size, expected):
+    row = {"least": 5.0, "most": 6.0, "statistic": "count", "decimals": 0}
+    assert comparison.is_possible(row | {"value_published": printed}, size) == expected

@@ -2,12 +2,11 @@
 through.
 """
 
-from pathlib import Path as File
-
 import numpy as np
 import pandas as pd
 import pytest
 from panels import options_of, panels_of
+from studies import study
 
 from bezierplan.analysis import metrics, results
 from bezierplan.figures import sheet
@@ -18,16 +17,10 @@ from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.settings import fill_settings
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Chunk
-from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-FILE = File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml"
-SETTINGS = {
-    name: value
-    for name, value in checked.read(FILE)["settings"].items()
-    if not isinstance(value, dict)
-}
+SETTINGS = study("tharwat2018").resolve_settings("pso")
 FIELD = Problem(
     "field",
     Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"),
@@ -39,7 +32,7 @@ CHUNK = Chunk(
     experiment="routes",
     method="swarm",
     planner="chaotic_pso",
-    settings=SETTINGS | {"chaotic_term": "none", "iterations": 20},
+    settings=SETTINGS | {"iterations": 20},
     problems={"field": {"workspace": "field"}},
     vary={"inertia": [1.0, 0.7]},
     seeds="common",

@@ -167,7 +167,6 @@ def test_no_table_shows_them_and_the_honest_one_ran(ended):
         "honest_drives"
     ]
     assert {file.name for file in folder.glob(f"{TABLES}/*")} == {
-        "honest.comparison.csv",
         "honest.csv",
     }
     assert "Traceback" not in done.stderr

@@ -7,28 +7,23 @@ import json
 import random
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 import starts
 from chunks import CHUNK, CLAIMS, MADE
 from commands import call
+from test_recheck import edited
 from trees import edit
 
 from bezierplan.analysis.outcome import verification
 from bezierplan.machine import digest
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems, recheck, table_files
+from bezierplan.running import execution, recheck, table_files
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.running.simulation.policy import Policy
 from bezierplan.study import stored
-from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.problem import Problem
-from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
 pytestmark = pytest.mark.usefixtures("workflows_are_forks")
 
@@ -100,14 +95,6 @@ def verified(capsys, *words):
     for known in vars(digest).values():
         getattr(known, "cache_clear", int)()  # as in a process of its own
     return call(capsys, "verify", *words, "--cores", 1)
-
-
-def edited(file, column, change):
-    """Change each value of a column of a file; with a digest like an honest file."""
-    table = parquet.read_table(file)
-    place = table.column_names.index(column)
-    values = pa.array([*map(change, table[column].to_pylist())], table.schema.field(column).type)
-    table_files.write(table.set_column(place, column, values), str(file))
 
 
 def listed(folder, name):
@@ -201,7 +188,7 @@ def test_other_code_that_makes_the_same_is_told_and_sound(results, capsys):
     status, lines, _ = verified(capsys, results)
     assert status == 0
     assert lines[-1] == (
-        "made by other code or libraries (code): 3 runs and 21 files made again, all equal"
+        "made by other code or libraries (code): 3 runs and 19 files made again, all equal"
     )
     Path("bend/place.py").write_text("MIDDLE = 4.9\n")
     status, lines, _ = verified(capsys, results)
@@ -251,7 +238,7 @@ def test_all_but_files_that_nothing_makes_are_proven(results, capsys):
     assert lines[len(left)].startswith("7 runs in 3 files: 7 different paths judged again; ")
     assert status == 1
     told = f"nothing makes {len(left)} files; the others: made by this code: "
-    assert lines[-1] == f"{told}7 runs and 21 files made again, all equal"
+    assert lines[-1] == f"{told}7 runs and 19 files made again, all equal"
 
 
 def test_runs_that_are_missing_without_a_list_are_named(results, capsys):
@@ -298,167 +285,7 @@ def test_a_slip_of_a_planner_is_told(case, tmp_path, planners_are_read_here):
         execution.run_chunk(MADE, chunk)
 
 
-# --------------------------------------------------------------------------------------------------
-# Values
-
-
-FIELD = (0.0, 10.0, 0.0, 10.0)
-OPEN, SHUT = (
-    from_lines([".........", ".........", row, row, "........."], 1.0, "m")
-    for row in (".........", "....#....")
-)
-WORLDS = {
-    "circles": MovingCircles(
-        FIELD,
-        FIELD,
-        np.array([[5.0, 8.0]]),
-        np.array([[0.0, 0.1]]),
-        np.array([1.0]),
-        "circles",
-        1.0,
-        60,
-        "m",
-    ),
-    "cells": ChangingCells((OPEN, SHUT), np.array([2.5]), 1.0, 60),
-}
-MET = {
-    "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
-    "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
-}
-POLICY = Policy(replan="when_changed", waits=False, brake=1.0, horizon=2.0, spacing=0.1)
-DRIVES = CHUNK._replace(
-    experiment="d",
-    planner="shortest_path",
-    problems={name: {"workspace": "field"} for name in MET},
-    policy=POLICY.model_dump(),
-)
-
-
-@pytest.fixture(scope="module")
-def tasks(tmp_path_factory):
-    """What is to be judged: runs and drives."""
-    folder = tmp_path_factory.mktemp("files")
-    files = {name: str(folder / f"{name}.parquet") for name in ("e", "d")}
-    problems.write(MADE, dict.fromkeys(MADE, "field"), files["e"])
-    problems.write(MET, dict.fromkeys(MET, "field"), files["d"], WORLDS)
-    runs = {
-        "e": (CHUNK, execution.run_chunk(MADE, CHUNK)[0]),
-        "d": (DRIVES, execution.run_chunk(MET, DRIVES, WORLDS)[0]),
-    }
-    made = {}
-    for name, (chunk, table) in runs.items():
-        file = str(folder / f"{name}.runs.parquet")
-        table_files.write(table, file)
-        made[name] = recheck.StoredRuns(files[name], {file: chunk})
-    return made
-
-
-@pytest.fixture(params=["e", "d"])
-def each(request, tasks):
-    return tasks[request.param]
-
-
-def test_runs_and_drives_are_sound_and_can_be_made_again(each):
-    verdict = recheck.verify([each], 1, print)
-    assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
-    for every, number in ((True, 4), (False, 1)):
-        # Not the verdict's digest: that names the folder, and chooses another run once in thirty.
-        again = recheck.run_again([each], (), 1, "digest", every)
-        assert again == recheck.RunsVerdict(runs=number), "all, or the first"
-
-
-EDITS: dict[tuple[str, str, str], Callable] = {
-    ("e", "feasible", "feasible"): lambda value: True,
-    ("e", "length", "length"): lambda value: value - 1e-6,
-    ("e", "clearance", "clearance"): lambda value: value + 1e-7,
-    ("e", "path_points", "length"): lambda points: [1.0, 8.0, 5.0, 9.0, 9.0, 8.0],
-    ("e", "path_points", "path_points"): lambda points: [*points[:-1], points[-1] + 0.5],
-    ("e", "path_curve", "path_points"): lambda value: "",
-    ("e", "repeat", "repeat"): lambda value: value + 1,
-    ("e", "method", "method"): lambda value: "other",
-    ("e", "generations", "generations"): lambda value: 7,
-    ("d", "arrival", "objective"): lambda value: value - 1.0,
-    ("d", "length", "length"): lambda value: value - 1.0,
-    ("d", "feasible", "feasible"): lambda value: not value,
-    ("d", "path_points", "length"): lambda points: [*points[:2], 5.0, 9.0, *points[2:]],
-}
-
-
-def on_a_copy(task, folder):
-    """A task whose runs are those of a copy of its file, and that file."""
-    ((file, chunk),) = task.runs.items()
-    copy = shutil.copy(file, folder)
-    return task._replace(runs={copy: chunk}), copy
-
-
-@pytest.mark.parametrize(("name", "column", "named"), EDITS)
-def test_an_edit_is_told_with_file_run_column_and_both_values(tasks, tmp_path, name, column, named):
-    task, copy = on_a_copy(tasks[name], tmp_path)
-    edited(copy, column, EDITS[name, column, named])
-    faults = recheck.judge(task).faults
-    assert any(f": {named}: stored " in str(fault) for fault in faults)
-    assert all(str(fault).startswith(f"{copy}: s/{name}/") for fault in faults)
-
-
-FORGED = {
-    "dropped": lambda table: table.slice(0, 2),
-    "doubled": lambda table: pa.concat_tables([table, table.slice(0, 1)]),
-    "copied": lambda table: table.take([0] * len(table)),
-}
-
-
-@pytest.mark.parametrize("case", FORGED)
-def test_rows_that_were_dropped_doubled_or_copied_are_named(tasks, tmp_path, case):
-    task, copy = on_a_copy(tasks["e"], tmp_path)
-    table_files.write(FORGED[case](table_files.read(copy)), copy)
-    assert re.search(r" rows; expected 4$|: id: stored ", str(recheck.judge(task).faults[0]))
-
-
-@pytest.mark.parametrize(
-    ("name", "column", "change"),
-    [
-        ("e", "history", lambda values: [values[0] / 2]),
-        ("d", "steps", lambda value: value + 1),
-    ],
-)
-def test_what_no_path_tells_shows_when_a_run_is_made_again(tasks, tmp_path, name, column, change):
-    task, copy = on_a_copy(tasks[name], tmp_path)
-    edited(copy, column, change)
-    assert not recheck.judge(task).faults
-    faults = recheck.run_again([task], (), 1, "", every=True).faults
-    assert faults
-    assert all(f": {column}: stored " in str(fault) for fault in faults)
-
-
-FOREIGN = {
-    "other columns": (lambda table: pa.table({"a": [1]}), "no column id"),
-    "text for numbers": (
-        lambda table: table.set_column(
-            table.column_names.index("length"), "length", pa.array(["1.0"] * len(table))
-        ),
-        "column length is of type string, not double",
-    ),
-}
-
-
-@pytest.mark.parametrize("case", FOREIGN)
-def test_a_foreign_table_is_refused(tasks, tmp_path, case):
-    change, fault = FOREIGN[case]
-    task, copy = on_a_copy(tasks["e"], tmp_path)
-    table_files.write(change(parquet.read_table(copy)), copy)
-    (found,) = recheck.judge(task).faults
-    assert str(found).startswith(f"{copy}: {fault}; delete it and start again")
-
-
-def test_wrong_input_is_one_line_with_status_2(tasks, tmp_path, capsys):
+def test_wrong_input_is_one_line_with_status_2(tmp_path, capsys):
     nowhere = tmp_path / "nowhere"
     line = f"{nowhere}: no runs here; expected a folder of results, such as results/full"
     assert verified(capsys, nowhere) == (2, [], [line])
-    cut = tmp_path / "cut.parquet"
-    cut.write_bytes(b"PAR1")
-    for task, fault in (
-        (tasks["e"]._replace(problems=str(cut)), "not a whole file of problems"),
-        (tasks["e"]._replace(problems=tasks["d"].problems), "not of the problems that"),
-    ):
-        (found,) = recheck.judge(task).faults
-        assert str(found).startswith(f"{task.problems}: {fault}")

@@ -2,7 +2,6 @@
 results depend on names alone.
 """
 
-import json
 import os
 import pstats
 import re
@@ -11,8 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-import zlib
-from base64 import b64decode
 from collections import Counter
 from pathlib import Path
 
@@ -165,16 +162,10 @@ EDITS = {
         "history[generation] = best_objective + 0",
         runs(2, GENETIC) | OF_RUNS,
     ),
-    "code of an operator": (
-        "src/bezierplan/planners/parts/genetic.py",
-        "wheel = np.cumsum(fitness)",
-        "wheel = np.cumsum(fitness + 0)",
-        runs(2, GENETIC) | OF_RUNS,
-    ),
     "what a job does": (
         "src/bezierplan/analysis/jobs.py",
-        "        compared = comparison.compare(\n",
-        "        0\n        compared = comparison.compare(\n",
+        "            compared = comparison.compare(\n",
+        "            0\n            compared = comparison.compare(\n",
         dict.fromkeys(("table table1", "latex table1", *SUMMARY), 1),
     ),
     "a title": (
@@ -194,12 +185,6 @@ EDITS = {
         "samples: 701}",
         "samples: 701, population: 202}",
         runs(2, ["nonsmooth"]) | TABLES,
-    ),
-    "a setting of all methods": (
-        EXPERIMENTS,
-        "penalty: 10.0",
-        "penalty: 11.0",
-        runs(2, GENETIC) | OF_RUNS,
     ),
     "a published number": (
         "config/studies/song2016/published/table1.csv",
@@ -324,11 +309,9 @@ def test_page_made_again_on_one_core_has_equal_bytes(tree):
     assert file.read_bytes() == before
 
 
-def untimed(text):
-    """What a page shows that depends on no time: the data of its viewer, pictures by name."""
-    (data,) = re.findall(r'id="page-data">([^<]*)<', text)
-    pictures = re.findall(r'alt="(\w+): [^"]*" src="[^"]*" data-packed="([^"]*)"', text)
-    return json.loads(zlib.decompress(b64decode(data))), dict(pictures)
+def pictures_of(text):
+    """The pictures of a page by name."""
+    return dict(re.findall(r'alt="(\w+): [^"]*" src="[^"]*" data-packed="([^"]*)"', text))
 
 
 def processes_in(folder):
@@ -399,10 +382,9 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
         assert not (tree / "results/full/index.html").exists()
     subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
-    (data, pictures), (again, drawn) = (
-        untimed((place / "results/full/index.html").read_text()) for place in (finished, tree)
+    pictures, drawn = (
+        pictures_of((place / "results/full/index.html").read_text()) for place in (finished, tree)
     )
-    assert again == data
     assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
     assert not list((tree / "results").rglob(".part-*"))
     drawings, drawn_again = (

@@ -84,7 +84,7 @@ def _of_results(studies: Mapping[str, Study]) -> Costs:
         yield _timed(f"judgement: {key}/{experiment}", _run, job, key)
     for key, table in TABLES.items():
         job = jobs.build_table_of_runs(studies[key], "smoke", table)
-        outputs = ("table", "published", "order_and_level", "comparison")
+        outputs = ("table", "published", "comparison")
         yield _timed(f"table: {key}/{table}", _run, job, key, *outputs)
     for key, figure in FIGURES.items():
         drawn = jobs.build_figure(studies[key], "smoke", figure)

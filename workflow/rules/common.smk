@@ -306,7 +306,7 @@ def of_studies(scale, name, has=lambda study: study.claims):
 
 def summed(scale):
     """Files of all studies of a scale together."""
-    names = ["numbers", "claims", "methods"] if compared(scale, "order_and_level") else []
+    names = ["numbers", "claims", "methods"] if compared(scale, "published") else []
     return [f"results/{scale}/{name}.csv" for name in names]
 
 
@@ -348,7 +348,6 @@ def shown(wildcards):
     ]
     return [
         *artefacts,
-        *([f"results/{scale}/order_and_level.csv"] if summed(scale) else []),
         *of_studies(scale, "claims.csv"),
         *of_studies(scale, "claim_checks.csv"),
         *of_studies(scale, "claims_by_reading.csv"),

@@ -27,7 +27,6 @@ rule methods:
 rule summary:
     input:
         comparisons=lambda wildcards: compared(wildcards.scale, "comparison"),
-        order_and_level=lambda wildcards: compared(wildcards.scale, "order_and_level"),
         claims=lambda wildcards: of_studies(wildcards.scale, "claims.csv"),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -37,7 +36,6 @@ rule summary:
             labels={"item": "claims", "shows": "every claim with its verdict"},
             caption="../report/summary.rst",
         ),
-        order_and_level="results/{scale}/order_and_level.csv",
     log:
         "results/{scale}/summary.log",
     conda:

@@ -1,5 +1,5 @@
 # Tables in the paper's form; published.csv holds the printed numbers in the same rows and columns,
-# comparison.csv each printed number next to ours, with its verdict and place, order_and_level.csv each column.
+# comparison.csv each printed number next to ours, with its position and place.
 
 
 rule table:
@@ -14,7 +14,6 @@ rule table:
             caption="../report/artefact.rst",
         ),
         published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
-        order_and_level=f"{RESULTS}/{{tree}}/{{table}}.order_and_level.csv",
         comparison=report(
             f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
             category="{study}",
@@ -34,7 +33,7 @@ rule table:
         "../scripts/job.py"
 
 
-# Of numbers that no paper prints, or of more than it prints.
+# Of numbers that no paper prints.
 use rule table as unprinted_table with:
     input:
         unpack(results(of(jobs.build_table_of_runs))),
@@ -46,7 +45,6 @@ use rule table as unprinted_table with:
             labels={"item": "{table}", "shows": "our numbers"},
             caption="../report/artefact.rst",
         ),
-        comparison=f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
     wildcard_constraints:
         study=studies_with(UNPRINTED),
 

@@ -179,62 +179,44 @@ class Recheck(Job):
 
 @dataclass(frozen=True)
 class TableOfRuns(Job):
-    """The job that makes a table of runs, and compares it with published numbers, one by one and as
-    columns.
-    """
+    """The job that makes a table of runs, and compares it with published numbers if it has any."""
 
     name: str
-    """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
+    """`study/table`, which seeds random draws."""
     spec: Pivot
     """The table without its title, which stands in the caption alone."""
     labels: dict[str, str]
     """Name -> how it is printed."""
-    variants: dict[str, str]
-    """Method -> the method whose published numbers it is compared with."""
-    baselines: list[str]
     reconstructed: list[str]
     """Workspaces that the paper does not print."""
     fitted: dict[str, dict]
     """By metric, the numbers to which something was fitted."""
-    paired: bool
-    """True if runs with equal repeat numbers start alike."""
     repeats: int
 
     def run(self, input_files, output_files):
         """Make the table and its comparison with published numbers."""
 
         from bezierplan.analysis import results, study_code
-        from bezierplan.analysis.numbers import comparison, order_and_level, tables
+        from bezierplan.analysis.numbers import comparison, tables
         from bezierplan.running import inputs
 
         # The metrics of a study are known once its code is loaded.
         study_code.load_functions(self.code)
         ((experiment, files),) = inputs.group_by_experiment(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
-        file = input_files.sources[0] if self.sources else None
-        published = comparison.read_published(file, self.spec)
-        compared = comparison.compare(
-            runs,
-            self.spec,
-            published,
-            self.variants,
-            self.baselines,
-            self.name,
-            self.reconstructed,
-            self.fitted,
-        )
+        published = None
+        if self.spec.published:
+            published = comparison.read_published(input_files.sources[0], self.spec)
         table = tables.build_pivot(runs, self.spec, self.labels, published)
         table.to_csv(output_files.table, lineterminator="\n")
-        if self.spec.printed:
-            compared = compared[compared["value_published"].notna()]
+        if published is not None:
+            compared = comparison.compare(
+                runs, self.spec, published, self.name, self.reconstructed, self.fitted
+            )
             placed = compared.dropna(subset="table_row")
             printed = tables.lay_out(placed, placed["as_printed"], table.index, table.columns)
             printed.to_csv(output_files.published, lineterminator="\n")
-            columns = order_and_level.compare_columns(
-                runs, self.spec, compared, self.name, self.paired
-            )
-            self.write(columns, output_files.order_and_level)
-        self.write(compared, output_files.comparison)
+            self.write(compared, output_files.comparison)
 
 
 @dataclass(frozen=True)
@@ -384,7 +366,6 @@ class Summary(Job):
         study_code.load_functions(self.code)
         summed = summary.gather(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
-            input_files.order_and_level,
             input_files.claims,
         )
         for name, table in summed.items():

@@ -150,11 +150,6 @@ class Pivot(TableEntry):
         "and -, then .csv; the table then has the paper's form: the paper's methods alone, under "
         "the default reading (`primary`), and the printed numbers in the same rows and columns",
     )
-    extends: Annotated[Name, Names("compared")] = Field(
-        None,
-        description="a table with published numbers: they are compared with the runs of this table "
-        "as well, of which there are more: variants, baselines, other readings",
-    )
     reads: dict[Name, Metric] = Field(
         {},
         description="metric in the published file → the metric that the number is compared with, "
@@ -207,11 +202,6 @@ class Pivot(TableEntry):
                 "reads: the table has no published numbers, whose metrics it names; leave it out"
             )
         return self
-
-    @property
-    def printed(self) -> bool:
-        """Return whether it has the form that the paper prints."""
-        return bool(self.published) and not self.extends
 
     @property
     def key_columns(self) -> list[str]:

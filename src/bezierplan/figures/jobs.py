@@ -138,7 +138,6 @@ class Page(Job):
         """Write the page as one html file."""
         from bezierplan.analysis import study_code
         from bezierplan.figures.page import EVIDENCE, build, reader
-        from bezierplan.running import inputs
 
         study_code.load_functions(self.code)
         folder = Path(input_files.verified).parent
@@ -148,6 +147,5 @@ class Page(Job):
             list(input_files.summary),
             input_files.verified,
             reader.Evidence(*map(reader.read, EVIDENCE)) if self.page.outcome else None,
-            results=inputs.group_by_experiment(self.shows, input_files),
         )
         Path(output_files.page).write_text(build.render_page(page, folder), encoding="utf-8")

@@ -73,7 +73,7 @@ def _describe_means(study: Study, table: str) -> str:
     means = (
         int(row["n_ours"])
         for row in read_kept(study, "numbers_papers_size")
-        if row["primary"] == "True" and row["table"] == table and row["statistic"] == "mean"
+        if row["table"] == table and row["statistic"] == "mean"
     )
     least = min(means, default=every)
     left_out = f"Means leave out runs without a free path: at least {least} of {every} remain"

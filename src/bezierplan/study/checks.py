@@ -91,7 +91,6 @@ class Checks:
             "world": study_code.load_part(study.code_for("worlds"), "worlds"),
             "drawing": study_code.load_part(study.code_for("panels"), "panels"),
             "statistic": statistics.STATISTICS,
-            "compared": study.find_published_tables(),
             "artefact": study.tables | study.figures,
             "printed table": [Path(file).stem for file in study.list_published_files()],
             "claim": [claim.id for claim in study.claims],

@@ -87,34 +87,19 @@ class Study(Experiments, ArtefactsFile):
     def files_of(self, name: str) -> list[str]:
         """Return the files of a table or figure, relative to the folder of the study's results."""
         endings = ["svg", "png", "pdf", "csv", "txt"] if name in self.figures else ["csv", "tex"]
-        if name in self.find_tables_of_runs():
-            endings.append("comparison.csv")
         if name in self.find_published_tables():
-            endings += ["published.csv", "order_and_level.csv"]
+            endings += ["comparison.csv", "published.csv"]
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
     def find_tables_of_runs(self) -> dict[str, Pivot]:
-        """Return the tables of runs by name. No other kind of table is compared with published
-        numbers.
-        """
+        """Return the tables of runs by name."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
-
-    def complete_table(self, table: str) -> TableEntry:
-        """Return a table; one that extends another takes over what that says about published
-        numbers.
-        """
-        spec = self.tables[table]
-        if not getattr(spec, "extends", None):
-            return spec
-        printed = self.tables[spec.extends]
-        shared = ("published", "reads", "within", "primary", "identify")
-        return spec.but(**{name: getattr(printed, name) for name in shared})
 
     def find_published_file(self, table: str) -> str | None:
         """Return the file of a table's published numbers, relative to the working folder; None
         without one.
         """
-        file = getattr(self.complete_table(table), "published", None)
+        file = getattr(self.tables[table], "published", None)
         return file and shorten_path(self.folder / "published" / file)
 
     def list_reconstructed_workspaces(self, table: Pivot) -> list[str]:

@@ -205,27 +205,18 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
 
 def build_table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     """Build the job that writes a table of runs with its comparison."""
-    spec = study.complete_table(table)
-    experiment = study.experiments[spec.experiment]
-    # Baselines appear only in the comparison, and there with variants, unless the table has the
-    # paper's form.
-    where = {"method": study.own_methods(spec.experiment, table)} | spec.where
-    if spec.printed:
-        where |= spec.primary
-    beside = [] if spec.printed else study.methods_of(spec.experiment)
+    spec = study.tables[table]
+    where = {"method": study.own_methods(spec.experiment, table)} | spec.where | spec.primary
     file = study.find_published_file(table)
     return TableOfRuns(
-        name=f"{study.key}/{spec.extends or table}",
+        name=f"{study.key}/{table}",
         # What does not change the table's numbers stays out of the job, so an edit of it reruns
         # nothing; labels come below.
         spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=build_labels(study, table),
-        variants={name: method for name, method in study.variants().items() if name in beside},
-        baselines=[name for name in beside if name in study.baselines],
         reconstructed=study.list_reconstructed_workspaces(spec),
-        fitted=study.fitted.get(spec.extends or table, {}),
-        paired=experiment.paired,
-        repeats=experiment.repeats[scale],
+        fitted=study.fitted.get(table, {}),
+        repeats=study.experiments[spec.experiment].repeats[scale],
         sources=[file] if file else [],
         shows=find_results(study, table, scale),
         code=study.code_for("metrics"),

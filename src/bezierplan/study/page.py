@@ -4,7 +4,7 @@ from pathlib import Path
 
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import EVIDENCE, PICTURES, list_files, sort_as_printed
-from bezierplan.figures.page.page_job import ExperimentView, MethodView, PageJob, StudyView
+from bezierplan.figures.page.page_job import MethodView, PageJob, StudyView
 from bezierplan.machine.digest import name_module, read_docstring
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import captions, evidence, jobs
@@ -62,6 +62,7 @@ def build_page(studies: Studies, scale: str, root: str = RESULTS) -> Page:
     return Page(
         PageJob(scale, shown, known),
         sources=[*list_files(), *([*EVIDENCE, *PICTURES.values()] if known else [])],
+        # The page reads none of them; its list of verified files has them.
         shows=find_results(studies, scale, root),
         code=[module for own in studies.values() for module in own.code_for("metrics")],
     )
@@ -90,7 +91,7 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
         claims={claim.id: claim for claim in study.claims},
         repeats=_count_repeats(study, scale),
         tables={
-            name: (caption, study.complete_table(name))
+            name: (caption, study.tables[name])
             for name, caption in shown.items()
             if name in study.tables
         },
@@ -103,10 +104,6 @@ def _describe_study(study: Study, scale: str, root: str) -> StudyView:
             *(("audit",) if has_audit(study) else ()),
         ],
         changes=evidence.list_changes(study),
-        experiments={
-            name: ExperimentView(content.methods, content.repeats[scale], study.moves(name))
-            for name, content in study.experiments.items()
-        },
         answer=(answers[0]["title"], answers[0]["text"]) if answers else None,
     )
 

@@ -15,18 +15,9 @@ def list_parts_with_runs(artefact: TableEntry | Figure) -> list[Any]:
 
 
 def list_methods(study: Study, artefact: str) -> dict[str, list[str]]:
-    """Return the methods whose runs a table or figure needs, by experiment.
-
-    A table in the paper's form and a figure need the methods that they select, baselines included
-    if named; another table needs all, because its comparison shows them.
+    """Return the methods whose runs a table or figure shows, baselines included if named, by
+    experiment.
     """
-    if spec := study.find_tables_of_runs().get(artefact):
-        methods = study.methods_of(spec.experiment)
-        if spec.printed:
-            methods = convert_to_list(
-                spec.where.get("method", study.own_methods(spec.experiment, artefact))
-            )
-        return {spec.experiment: methods}
     needed: dict[str, set[str]] = {}
     for panel in list_parts_with_runs(study.artefact(artefact)):
         methods = panel.where.get("method", study.own_methods(panel.experiment, artefact))

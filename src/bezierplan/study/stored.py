@@ -76,7 +76,7 @@ def yield_jobs(
             continue
         yield from ((job, [f"{own_place}/{file}" for file in files]) for job, files in parts)
     yield jobs.build_methods(studies, scale), ["methods.csv"]
-    yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv", "order_and_level.csv"]
+    yield jobs.build_summary(studies, scale), ["numbers.csv", "claims.csv"]
     yield page.build_page(studies, scale, root), [PAGE]
 
 

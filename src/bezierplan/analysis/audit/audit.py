@@ -3,7 +3,7 @@ need no runs.
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
 (`metrics.Metric`): `check_statistics` checks the statistics of one cell, `check_ranks` mean ranks,
-`check_orders` the order of rows, `check_digits` all decimals.
+`check_orders` the order of rows.
 `analysis.possible` has the closed forms.
 """
 
@@ -31,19 +31,8 @@ _SPREADS = ("std", "iqr", "range")
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
 
-LEAST_DIGITS = 30
-"""Decimals that a paper must print for the test of their distribution: three of each digit."""
-
-_LEAST_SPREAD = 10
-"""A decimal counts if the numbers of its metric have a standard deviation of so many of its units:
-then each digit is about equally likely, whatever is measured.
-"""
-
 LEVEL = 0.05
 """The level of Friedman's test."""
-
-DIGITS_LEVEL = 0.01
-"""Decimals are inconsistent if chance makes digits as uneven less often."""
 
 
 def check_lengths(
@@ -93,7 +82,7 @@ def check_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) ->
         rows += check_ranks(name, table, specs[name].across)
         for rule in specs[name].monotone:
             rows += check_orders(name, table, rule)
-    return [*merge_rows(rows), *check_digits(tables)]
+    return merge_rows(rows)
 
 
 def check_statistics(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
@@ -253,42 +242,6 @@ def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dic
             where = describe_cell(row, [*keys, "metric", "statistic"])
             told = f"{before['as_printed']} {sign} {row['as_printed']}"
             yield build_audit_row(item, where, words, row["value"], before["value"], fits, told)
-
-
-def check_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
-    """Test whether all digits are equally likely among a paper's decimals (Pearson's test), and
-    yield at most one row of the audit.
-
-    Only decimals far below the spread of their metric count; there is no row with fewer than
-    `LEAST_DIGITS` of them. A number that several tables repeat counts once; numbers of 1 to n runs,
-    such as counts, are left out, and so are whole numbers, whose means do not have all decimals.
-    """
-    from scipy import stats
-
-    every = pd.concat([table.assign(item=name) for name, table in tables.items()])
-    whole = [METRICS[metric].step is not None for metric in every["metric"]]
-    every = every[~every["statistic"].isin(["count", "share"]) & ~np.array(whole)]
-    every = every.drop_duplicates([column for column in every if column not in ("item", "n")])
-    digits = "".join(
-        digit
-        for _, rows in every.groupby("metric", sort=False)
-        for text in rows["as_printed"]
-        for position, digit in enumerate(text.partition(".")[2], 1)
-        if rows["value"].std() >= _LEAST_SPREAD * 10.0**-position
-    )
-    if len(digits) < LEAST_DIGITS:
-        return
-    counts = [digits.count(str(digit)) for digit in range(10)]
-    chance = stats.chisquare(counts)
-    rule = "each digit is about equally likely among decimals: chi-square with 9 degrees of freedom"
-    told = (
-        f"0 to 9: {' '.join(map(str, counts))}, by chance {len(digits) / 10:g} each; chi-square "
-        f"{chance.statistic:.3g}, p = {chance.pvalue:.2g}, inconsistent below {DIGITS_LEVEL:g}"
-    )
-    items = ", ".join(every["item"].unique())
-    where = f"{len(digits)} decimals of {len(every)} numbers"
-    fits = bool(chance.pvalue >= DIGITS_LEVEL)
-    yield build_audit_row(items, where, rule, max(counts), len(digits) / 10, fits, told)
 
 
 def check_paper(

@@ -32,7 +32,7 @@ its own; contradicted by one - in the family, or by a 0 beside a +; no effect wi
 otherwise undecided.
 
 A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are
-reported next to it, and the reason says where they disagree. If it names none, the seconds decide:
+reported next to it. If it names none, the seconds decide:
 the planners are then of different kinds, whose evaluations are different things.
 
 `analysis.columns` describes the columns of the two tables: claims.csv, one row per claim and
@@ -105,23 +105,25 @@ def _judge_variant(
         "artefact": ", ".join(claim.artefacts),
         "finding": bool(claim.finding),
         "main": bool(claim.main),
-        "own_criterion": claim.criterion is not None,
         "timed": any(split_work(check)[0].timed for check in checks if check.primary),
         "published": f"{sum(held)} of {len(held)}" if held else "not printed",
     }
     if decisive:
-        row |= _describe_verdict(claim, judgements, deciding, decisive, material)
+        row |= _describe_verdict(claim, deciding, decisive, material)
     else:
         row |= {"verdict": "untestable", "reason": obstacle}
-    return row, [
+    rows = [
         _build_check_row(entry, material) | key | {"decisive": entry is decisive}
         for entry in judgements
     ]
+    if decisive and assignment is first:
+        primary = [each for each in rows if each["primary"]]
+        row["where_it_holds"] = sentences.describe_where(primary, checks, material.study.labels)
+    return row, rows
 
 
 def _describe_verdict(
     claim: Claim,
-    judgements: list[MarkedComparison],
     deciding: list[MarkedComparison],
     decisive: MarkedComparison,
     material: Material,
@@ -140,20 +142,14 @@ def _describe_verdict(
         entry.finding.chance_known for entry in deciding if entry.mark_family == "?"
     ):
         verdict = "depends"
-    everywhere = verdict == "supported" and holds != "any"
     reasons = [
         sentences.note_own_criterion(claim, verdict),
-        sentences.note_negligible(deciding, verdict, _find_unit(deciding[0].check, material)),
         _write_reason(decisive),
-        sentences.note_disagreement(judgements),
         claim.note,
     ]
     return finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(entry.mark == '+' for entry in deciding)} of {len(deciding)}",
-        "where_it_holds": ""
-        if everywhere
-        else sentences.describe_where_it_holds(judgements, material.study.labels),
         "counted": decisive.comparison.counted,
         "p_family": decisive.p_family,
         "reason": sentences.join_notes(*reasons),

@@ -24,7 +24,6 @@ from bezierplan.analysis.results import (
     select,
 )
 from bezierplan.analysis.table_kinds import Pivot
-from bezierplan.schema.model import convert_to_list
 from bezierplan.workspaces.seeds import generator
 
 LEAST_REACH = 0.001
@@ -34,8 +33,8 @@ WIDE = 0.5
 """A range that holds this share of the other printed numbers is too wide to tell."""
 
 PLACES = ["table_row", "table_column", "as_printed"]
-"""Columns beside those of a comparison, for a table of the paper's form: the place of the number in
-the table's file, counted from 0 below its head and right of the names of rows, and its text.
+"""Columns beside those of a comparison: the place of the number in the table's file, counted from 0
+below its head and right of the names of rows, and its text.
 """
 
 NO_RANGE = "no range"
@@ -51,18 +50,15 @@ SIGNS_MEAN = (
 
 FITTED = "we fitted a detail to it"
 ONE_DRAW = "one draw of a random map"
-NO_MAP = "the map is ours"
+NO_MAP = "no exact map is printed"
 UNDEFINED = "not defined in the paper"
-"""Reasons why the position of a number proves nothing of the paper."""
+"""Reasons why the position of a number proves nothing about the paper."""
 
 
-def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
+def read_published(file: str, spec: Pivot) -> pd.DataFrame:
     """Read the published numbers of a table: key columns, metric, statistic, n, unit, value,
-    as_printed (the value's text). If there is no file, it is empty, with the table's keys.
+    as_printed (the value's text).
     """
-    if file is None:
-        columns = ("metric", "statistic", "n", "unit", "value", "as_printed")
-        return pd.DataFrame(columns=[*spec.key_columns, *columns])
     return assign_metrics(read_printed_numbers(file), spec.reads)
 
 
@@ -77,8 +73,6 @@ def compare(
     results: Results,
     spec: Pivot,
     published: pd.DataFrame,
-    variant_of: dict[str, str],
-    baselines: list[str],
     name: str,
     reconstructed: Collection[str],
     fitted: dict[str, dict],
@@ -86,25 +80,17 @@ def compare(
     """Compare the published numbers of a table with ours, in the order of the table; the columns
     are described above.
 
-    published: as from `read_published`. variant_of: method -> the method whose published numbers it
-    is compared with. baselines: methods without a published number. Variants of the table's methods
-    and baselines get rows, whether or not the table shows them. name: `study/table`, which seeds
-    each row's random draws. reconstructed: workspaces that the paper does not print. fitted: as in
-    `find_reasons`.
+    published: as from `read_published`. name: `study/table`, which seeds each row's random draws.
+    reconstructed: workspaces that the paper does not print. fitted: as in `find_reasons`.
     """
     key_columns = list_key_columns(published)
     keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
-    methods, beside = convert_to_list(spec.where.get("method", [])), []
-    if methods and "method" in keys:
-        variants = [variant for variant, method in variant_of.items() if method in methods]
-        beside = [name for name in variants + baselines if name not in methods]
-        spec = spec.but(where=spec.where | {"method": methods + beside})
-    ours = tables.compute_cells(results, spec, keys, beside)
+    ours = tables.compute_cells(results, spec, keys)
     ours = tables.place_cells(ours, spec, results.problems)
     # Before the join, while all ranks of the printed table stand together.
     marked = published.assign(impossible=find_impossible_ranks(published, spec))
-    both = _join_published(ours, marked, key_columns, variant_of)
-    # The outer join sorts rows by name; the table has an order of its own.
+    both = _join_published(ours, marked, key_columns)
+    # The published file has an order of its own.
     order = (
         tables.order_keys(both, spec, results.problems)
         .sort_values([*keys, "value", "metric", "statistic"])
@@ -112,24 +98,18 @@ def compare(
     )
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
-    if spec.printed:
-        _refuse_lost(both, spec, name)
+    _refuse_lost(both, spec, name)
     both["unit"] = [metrics.find_unit(metric, workspace_unit) for metric in both["metric"]]
     described = pd.DataFrame(
         [_compute_row(row, keys, name) for row in both.to_dict("records")], index=both.index
     )
-    table = both.join(described).reindex(
-        columns=keys + COLUMNS_OF["comparison"] + PLACES * spec.printed
-    )
+    table = both.join(described).reindex(columns=keys + COLUMNS_OF["comparison"] + PLACES)
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
     of_ours = results.runs.loc[results.runs["workspace"].isin(reconstructed), "problem"].unique()
     table["reason"] = find_reasons(both, spec, of_ours, fitted)
-    table["primary"] = table.index.isin(select(table, spec.primary).index)
-    if "method" in table:
-        table["primary"] &= ~table["method"].isin(variant_of)
     # Written as whole numbers and flags, also where cells are empty.
-    whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
+    whole = ["n_published", "n_ours", "n_asked", *PLACES[:2]]
     marks = ("wide", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
@@ -137,7 +117,7 @@ def compare(
 def find_reasons(
     numbers: pd.DataFrame, spec: Pivot, of_ours: Collection[str], fitted: dict[str, dict]
 ) -> pd.Series:
-    """Find the reason why each number of a table proves nothing of the paper, wherever it lies;
+    """Find the reason why each number of a table proves nothing about the paper, wherever it lies;
     empty if it may prove something.
 
     Our definition or our map may be wrong, or something was fitted to the number. of_ours: problems
@@ -145,13 +125,11 @@ def find_reasons(
     (column -> value or list of values).
     """
     vague = {entry.metric for entry in spec.values if not entry.defined}
-    printed = numbers.assign(method=numbers.get("printed_method"))
     was_fitted = pd.Series(False, numbers.index)
     for metric, where in fitted.items():
-        was_fitted |= printed.index.isin(select(printed, where | {"metric": metric}).index)
-    on_our_map = numbers["by_run"].map(
-        lambda runs: not runs.index.unique("problem").intersection([*of_ours]).empty,
-        na_action="ignore",
+        was_fitted |= numbers.index.isin(select(numbers, where | {"metric": metric}).index)
+    on_our_map = numbers["problems"].map(
+        lambda names: not names.isdisjoint(of_ours), na_action="ignore"
     )
     reason_of = pd.Series("", numbers.index)
     # Of several reasons the last one is told.
@@ -184,16 +162,14 @@ def _list_quantities(numbers: pd.DataFrame) -> Iterator[tuple[str, str]]:
 
 
 def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
-    """Refuse a printed number that belongs into a table of the paper's form and has no cell there:
-    raise ValueError.
-    """
+    """Raise ValueError for a printed number that belongs into the table and has no cell there."""
     shown = {
         (entry.metric, each.replace("unstated", "median"))
         for entry in spec.values
         for each in entry.statistics
     }
     where = {column: values for column, values in spec.where.items() if column in both}
-    own = select(both[both["value_published"].notna() & both["table_row"].isna()], where)
+    own = select(both[both["table_row"].isna()], where)
     lost = own[[quantity in shown for quantity in _list_quantities(own)]]
     if len(lost):
         first = lost.iloc[0]
@@ -222,10 +198,10 @@ def find_impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
 
 
 def _join_published(
-    ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str], variant_of: dict[str, str]
+    ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str]
 ) -> pd.DataFrame:
-    """Join our cells with n_published and value_published, and add published numbers without runs;
-    statistics are named as published.
+    """Join published numbers with our cells, n_published and value_published, also where there are
+    no runs; statistics are named as published.
 
     key_columns: the key columns of the published numbers.
     """
@@ -238,15 +214,7 @@ def _join_published(
         table.assign(statistic=[names.get(each, each[1]) for each in _list_quantities(table)])
         for table in (ours, theirs)
     )
-    if "method" in key_columns:
-        # A variant is merged under the method whose published numbers it is compared with.
-        ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
-    both = ours.merge(theirs, how="outer", on=[*key_columns, "metric", "statistic"])
-    if "method" in key_columns:
-        both = both.assign(
-            printed_method=both["method"], method=both["own_method"].fillna(both["method"])
-        )
-    return both
+    return ours.merge(theirs, how="right", on=[*key_columns, "metric", "statistic"])
 
 
 def _find_wide(
@@ -265,10 +233,7 @@ def _find_wide(
         if pd.isna(row["position"]) or row["position"] == NO_RANGE:
             wide.append(None)
             continue
-        # A variant's own name is in no published row; its number is that of its published method.
-        own = pd.Series(
-            {key: row["printed_method" if key == "method" else key] for key in key_columns}
-        )
+        own = pd.Series({key: row[key] for key in key_columns})
         same = alike[row["metric"], row["statistic"]]
         others = same[(same[key_columns] != own).any(axis=1)]
         here = others[(others[places] == own[places]).all(axis=1)]
@@ -305,8 +270,6 @@ def _compute_row(row: dict[str, Any], keys: list[str], name: str) -> dict[str, A
         "high95_ours": high,
     }
     published, single = row["value_published"], (row["least"], row["most"])
-    if pd.isna(published):
-        return cell | {"position": None, "possible": None}
     decimals = row["decimals"]
     cell["possible"] = is_possible(row, size)
     if row["unit"] == "s":  # of another machine

@@ -159,8 +159,7 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
         {
             "scenarios": rows["family"].to_list(),
             "free paths": [
-                _format_share(row.free)
-                + (f", worst {_format_share(row.worst)}" if row.worst < row.free else "")
+                ", worst ".join(dict.fromkeys(map(_format_share, (row.free, row.worst))))
                 for row in rows.itertuples()
             ],
             "free paths with corners": [
@@ -168,7 +167,7 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
             ],
             "excess": [*map(_format_share, rows["excess"])],
             "excess of a rounded path as smooth": [*map(_format_share, rows["rounded"])],
-            "problems in which the method beats it": [
+            "problems where the method beats that path": [
                 f"{row.adds:.0f} of {row.both:.0f}" if row.both else "–"
                 for row in rows.itertuples()
             ],

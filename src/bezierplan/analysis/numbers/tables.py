@@ -47,9 +47,8 @@ class Cell(NamedTuple):
     (median) and gap (median of the feasible ones) of the metric's kind of length. least: the least
     value that one run can have (`least` of an entry is stronger than that of its metric). size: how
     many runs satisfy the entry's `where`, with or without a value; each once. numbers: sorted (n,):
-    the metric of those that have one. by_run: of all that satisfy it, NaN without a value, by
-    problem and repeat. groups: the numbers as one array for each value of the column `within`, None
-    without that key.
+    the metric of those that have one. problems: names of the problems of those that satisfy it.
+    groups: the numbers as one array for each value of the column `within`, None without that key.
     """
 
     draws: int
@@ -59,7 +58,7 @@ class Cell(NamedTuple):
     least: float
     size: int
     numbers: np.ndarray
-    by_run: pd.Series
+    problems: frozenset[str]
     groups: tuple[np.ndarray, ...] | None
 
 
@@ -76,15 +75,12 @@ class _Measures(NamedTuple):
     least: np.ndarray
 
 
-def compute_cells(
-    results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
-) -> pd.DataFrame:
+def compute_cells(results: Results, spec: Pivot, keys: list[str]) -> pd.DataFrame:
     """Compute the numbers behind a table: one row for each entry of `values`, group of runs with
     equal keys, and statistic.
 
     Its columns are the keys, value (the number of the entry), metric, statistic, decimals, most
-    (the largest value that one run can have), and the fields of a `Cell`. beside: methods outside
-    the table among those of its `where`, which metrics that compare methods leave out.
+    (the largest value that one run can have), and the fields of a `Cell`.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values(["id", "repeat"], ignore_index=True)
@@ -103,8 +99,7 @@ def compute_cells(
         if metric.among_rows:
             # It compares those that the entry's `where` leaves, and among others even a repeated
             # run has a rank of its own.
-            among = own[~own["method"].isin(beside)]
-            compared = metrics.compute_values(among, entry.metric, results.problems)
+            compared = metrics.compute_values(own, entry.metric, results.problems)
             values, counts = compared.reindex(runs.index).to_numpy(), True
         else:
             values = measure(entry.metric)
@@ -144,11 +139,7 @@ def _compute_cell(
         least=np.fmin.reduce(measures.least[places]),
         size=len(counted),
         numbers=np.sort(numbers),
-        # With problem and repeat, by which methods are drawn together (`order_and_level`).
-        by_run=pd.Series(
-            measures.values[of_entry],
-            pd.MultiIndex.from_frame(runs[["problem", "repeat"]].iloc[of_entry]),
-        ),
+        problems=frozenset(runs["problem"].iloc[of_entry]),
         groups=groups,
     )
 
@@ -181,11 +172,12 @@ def lay_out(
 
 
 def build_pivot(
-    results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame
+    results: Results, spec: Pivot, labels: dict[str, str], published: pd.DataFrame | None
 ) -> pd.DataFrame:
     """Build a table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
-    labels: how names are printed. published: as from `comparison.read_published`. Column levels are
+    labels: how names are printed. published: as from `comparison.read_published`,
+    None without. Column levels are
     joined into one name, such as `objective value: smooth`; index levels stay columns of the csv
     file. A column of a table of the paper's form has the decimals of the printed one, or as many as
     its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
@@ -196,7 +188,7 @@ def build_pivot(
         statistics.compute_statistic(*each) for each in zip(table["statistic"], table["numbers"])
     ]
     decimals = table["decimals"]
-    if spec.printed:
+    if published is not None:
         digits = published["as_printed"].map(possible.find_last_place)
         # The most frequent number of decimals of a metric; of equally frequent ones the larger.
         usual = digits.groupby(published["metric"]).agg(lambda each: each.mode().max())
@@ -218,7 +210,7 @@ def build_pivot(
     columns = pd.Index([": ".join(levels) for levels in heads.itertuples(index=False)])
     wide = lay_out(table, texts, index, columns)
     # A table of the paper's form has the paper's columns alone.
-    if spec.printed:
+    if published is not None:
         return wide
     counted = [f"{len(own)} of {size}" for own, size in zip(table["numbers"], table["size"])]
     stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)

@@ -26,8 +26,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     )
     if vague := len(numbers) - len(told):
         text += (
-            f" For the other {vague} our runs scatter so widely that at least half of the paper's "
-            "numbers of the same kind would fit too."
+            f" For the other {vague} it is so wide that it holds half of the paper's other numbers "
+            "of the same kind."
         )
     reasons = told["reason"].fillna("")
     worth = told[reasons == ""]
@@ -35,8 +35,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         counts = reasons[reasons != ""].value_counts()
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
-            f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing of the "
-            f"paper ({why}). Only {len(worth)} could confirm a paper, and "
+            f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing about "
+            f"the paper ({why}). Only {len(worth)} could confirm a paper, and "
             f"{(worth['position'] == 'inside').sum()} do."
         )
     return text

@@ -12,15 +12,11 @@ from bezierplan.analysis.numbers import comparison
 
 
 def gather(
-    comparison_files: Mapping[tuple[str, str], str],
-    column_files: Iterable[str],
-    claims_files: Iterable[str],
+    comparison_files: Mapping[tuple[str, str], str], claims_files: Iterable[str]
 ) -> dict[str, pd.DataFrame]:
-    """Gather the tables of all studies by name: `numbers`, `claims`, and `order_and_level` of
-    columns of numbers.
+    """Gather the tables of all studies by name: `numbers` and `claims`.
 
-    comparison_files: by study and table. column_files: of the same tables. claims_files: of the
-    studies that have any.
+    comparison_files: by study and table. claims_files: of the studies that have any.
     """
     claims = [pd.read_csv(file) for file in claims_files]
     # Readers select by these columns, which without a row would be of no type.
@@ -30,25 +26,22 @@ def gather(
             {name: pd.read_csv(file) for name, file in comparison_files.items()}
         ),
         "claims": pd.concat(claims, ignore_index=True) if claims else none,
-        "order_and_level": pd.concat(map(pd.read_csv, column_files), ignore_index=True),
     }
 
 
 def list_numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     """List every row of comparisons that has a published number, in their order.
 
-    comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted
-    (the row is primary, has a range, and adds information: `_is_counted`), then the others of the
+    comparisons: (study, table) -> `comparison.compare`. Columns: study, table, counted (the row
+    has a range, and adds information: `_is_counted`), then the others of the
     comparisons, key columns first.
     """
     frames = [
-        frame[frame["value_published"].notna()]
-        .drop(columns=comparison.PLACES, errors="ignore")
-        .assign(study=study, table=table)
+        frame.drop(columns=comparison.PLACES, errors="ignore").assign(study=study, table=table)
         for (study, table), frame in comparisons.items()
     ]
     everything = pd.concat(frames, ignore_index=True)
-    first = ["study", "table", "primary"]
+    first = ["study", "table"]
     last = everything.columns[everything.columns.get_loc("metric") :].difference(first, sort=False)
     keys = list(everything.columns.difference([*first, *last], sort=False))
     everything["counted"] = _is_counted(everything, keys)
@@ -58,7 +51,7 @@ def list_numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFra
 def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     """Return which rows (n,), numbered from 0, count in the denominator.
 
-    They are primary and have a range. Left out are numbers that are impossible on any map,
+    They have a range. Left out are numbers that are impossible on any map,
     repetitions of a number in another table, and the last of several counts that add up to the
     number of runs.
     """
@@ -68,7 +61,7 @@ def _is_counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     )
     possible = numbers["possible"].astype("boolean").fillna(True) | of_map
     placed = numbers["position"] != comparison.NO_RANGE
-    counted = (numbers["primary"] & placed & possible).to_numpy(dtype=bool)
+    counted = (placed & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         listed = list(rows.iterrows())

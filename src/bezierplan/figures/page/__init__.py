@@ -10,8 +10,7 @@ from bezierplan.places import OUTCOME
 
 HERE = Path(__file__).parent
 EVIDENCE = [
-    str(OUTCOME / f"{name}.csv")
-    for name in ("numbers", "claims", "methods", "claim_checks", "order_and_level")
+    str(OUTCOME / f"{name}.csv") for name in ("numbers", "claims", "methods", "claim_checks")
 ]
 """What many runs say of all studies: tables of `reader.Evidence`."""
 PICTURES = {name: str(OUTCOME / f"{name}.png") for name in ("numbers", "numbers_tall")}

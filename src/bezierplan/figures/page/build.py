@@ -8,7 +8,7 @@ import json
 import re
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -21,10 +21,9 @@ from bezierplan.analysis.naming import Labels
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline
 from bezierplan.analysis.outcome.verification import describe_version
-from bezierplan.figures.page import HERE, PICTURES, addresses, charts, overview, reader, runs
+from bezierplan.figures.page import HERE, PICTURES, addresses, charts, overview, reader
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.running.columns import Row
-from bezierplan.running.inputs import Files
 
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {
@@ -41,29 +40,16 @@ def gather_content(
     summary: list[str],
     proof: str | None = None,
     evidence: reader.Evidence | None = None,
-    results: Mapping[str, Files] | None = None,
 ) -> SimpleNamespace:
-    """Return the content of the templates, with `data` for the viewer's script.
+    """Return the content of the templates.
 
     folder: the scale's results. summary: the files numbers.csv, claims.csv and methods.csv of all
     studies, none if the scale has none. proof: the file of the check of the runs shown
     (`running.recheck`), if there is one; it lists all other files behind the page. evidence: see
-    `reader.read_study_results`. results: by study/experiment, the files of the experiments whose
-    runs the viewer shows.
+    `reader.read_study_results`.
     """
     tables = [reader.read(file) for file in summary]
     studies = reader.read_study_results(job, folder, tables, evidence)
-    data: dict[str, dict] = {"runs": {}, "problems": {}}
-    for place, files in (results or {}).items():
-        key, _, name = place.partition("/")
-        shown, found = runs.choose_runs(key, name, studies[key].job.experiments[name], files)
-        studies[key].shown += shown
-        for kind, own in found.items():
-            data[kind] |= own
-    data["workspaces"] = _take_out_workspaces(data["problems"])
-    data["studies"] = {
-        key: {"labels": study.job.labels, "shown": study.shown} for key, study in studies.items()
-    }
     repeats = [own.repeats for own in job.studies.values()]
     verified = None
     if proof:
@@ -79,20 +65,7 @@ def gather_content(
         verified=verified,
         studies=studies,
         compared=[key for key, own in studies.items() if own.families is not None],
-        data=data,
     )
-
-
-def _take_out_workspaces(problems: dict[str, Row]) -> dict[str, Row]:
-    """Take the workspaces out of problems, which then name them: the first problem on each."""
-    # Problems on the same map would each bring its shapes.
-    first: dict[str, str] = {}
-    workspaces: dict[str, Row] = {}
-    for name, problem in problems.items():
-        shapes = problem["workspace"]
-        problem["workspace"] = first.setdefault(json.dumps(shapes), name)
-        workspaces.setdefault(problem["workspace"], shapes)
-    return workspaces
 
 
 def _write_headline(
@@ -158,12 +131,10 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "baseline": methods.BASELINE,
         "charts": charts,
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
-        "grid": build_grid,
         "marks": MARKS,
         "picture": lambda name: base64.b64encode(Path(PICTURES[name]).read_bytes()).decode(),
         "root": "",  # before the paths of files of results
         "meaning": describe_metric,
-        "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": read_size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
         "verdicts_on": legend.select_words,
@@ -172,12 +143,9 @@ def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
     return environment
 
 
-def pack(value: Any) -> str:
-    """Return text, or another value as JSON, compressed for the page's script to unpack."""
-    if not isinstance(value, str):
-        # JSON has no NaN: the script could not read it.
-        value = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return base64.b64encode(zlib.compress(value.encode(), 9)).decode()
+def pack(text: str) -> str:
+    """Return text compressed for the page's script to unpack."""
+    return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
 def read_size(drawing: str) -> list[int]:
@@ -228,59 +196,3 @@ def describe_positions(cells: Iterable[Row]) -> str:
     if len(reasons) == 1 and (reason := reasons.pop()):
         text += f". This proves nothing: {reason}"
     return text
-
-
-def build_grid(table: Row, labels: Labels) -> SimpleNamespace:
-    """Lay the numbers of a table out in rows and columns.
-
-    A row is a combination of keys, those of the default reading first; a column is a metric with a
-    statistic. head: printed names of keys and columns. rows: for each a flag of the default
-    reading, its keys (each with the address of a method that it may name), and its cells. same:
-    keys that all rows share. decimals: a number for each column.
-    """
-    numbers = table["numbers"]
-    values = {key: {cell["keys"][key] for cell in numbers} for key in numbers[0]["keys"]}
-    named = [key for key in values if len(values[key]) > 1]
-    columns: dict[str, list[Row]] = {}
-    rows: dict[tuple, dict[str, Row]] = {}
-    for cell in numbers:
-        columns.setdefault(cell["column"], []).append(cell)
-        rows.setdefault(tuple(cell["keys"].values()), {})[cell["column"]] = cell
-    study = table["address"].partition("/")[0]
-
-    listed = [
-        (
-            any(cell["primary"] for cell in cells.values()),
-            [
-                (
-                    # The column names the key, so a number stands alone.
-                    format_value(value)
-                    if isinstance(value, int | float)
-                    else reader.format_key(key, value, labels),
-                    addresses.build_address(study, "method", value),
-                )
-                for key, value in zip(values, place)
-                if key in named
-            ],
-            [cells.get(column) for column in columns],
-        )
-        for place, cells in rows.items()
-    ]
-    return SimpleNamespace(
-        head=[*(naming.name_column(key, labels) for key in named), *columns],
-        rows=sorted(listed, key=lambda row: not row[0]),
-        same=[
-            f"{key.replace('_', ' ')}: {reader.format_key(key, next(iter(each)), labels)}"
-            for key, each in values.items()
-            if key not in named
-        ],
-        decimals=[
-            max(_count_decimals(cell["value_published"]) for cell in own)
-            for own in columns.values()
-        ],
-    )
-
-
-def _count_decimals(value: float | None) -> int:
-    """Return how many decimals a value needs, at most four."""
-    return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))

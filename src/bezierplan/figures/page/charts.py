@@ -25,8 +25,8 @@ def add_bars(cells: list[Row]) -> None:
     columns: dict[Any, list[Row]] = {}
     for cell in cells:
         cell["bar"] = None
-        if cell["value_published"] is not None and cell["position"] not in (None, NO_RANGE):
-            columns.setdefault(cell.get("table_column", cell["column"]), []).append(cell)
+        if cell["position"] not in (None, NO_RANGE):
+            columns.setdefault(cell["table_column"], []).append(cell)
     for column in columns.values():
         reach = _list_known(column, *_ON_BAR.values())
         low, high = min(reach), max(reach)
@@ -55,7 +55,9 @@ def group_comparisons(comparisons: list[Row]) -> list[list[Row]]:
     effect and margin.
     """
     kind = itemgetter("check", "test", "metric", "statistic", "unit", "primary")
-    groups = [list(rows) for _, rows in groupby(comparisons, key=kind)]
+    # Comparisons that were judged together come before those one by one.
+    ordered = sorted(comparisons, key=lambda row: (row["check"], not row["primary"]))
+    groups = [list(rows) for _, rows in groupby(ordered, key=kind)]
     for group in groups:
         _add_strips(group)
     return groups

@@ -19,16 +19,6 @@ class MethodView(NamedTuple):
     """The docstring of its planner's file."""
 
 
-class ExperimentView(NamedTuple):
-    """An experiment whose runs the viewer may show."""
-
-    methods: list[str]
-    """The methods that are shown."""
-    repeats: int
-    moves: bool
-    """Tells if its runs are drives."""
-
-
 class StudyView(NamedTuple):
     """A study of the page, by names and plain values."""
 
@@ -53,7 +43,6 @@ class StudyView(NamedTuple):
     """Its other tables, as far as there are any: claims, claim_checks, audit."""
     changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
-    experiments: dict[str, ExperimentView]
     answer: tuple[str, str] | None = None
     """Title and text of the README's outcome."""
 

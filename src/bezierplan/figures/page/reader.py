@@ -17,7 +17,7 @@ from bezierplan.analysis.results import list_key_columns
 from bezierplan.analysis.table_kinds import Pivot, TableEntry
 from bezierplan.figures.caption import Caption
 from bezierplan.figures.page import charts
-from bezierplan.figures.page.addresses import build_address, build_cell_addresses
+from bezierplan.figures.page.addresses import build_address
 from bezierplan.figures.page.page_job import PageJob, StudyView
 from bezierplan.running.columns import Row
 from bezierplan.running.inputs import choose_tree
@@ -39,17 +39,14 @@ def list_rows(table: pd.DataFrame) -> list[Row]:
 
 
 class Evidence(NamedTuple):
-    """The results of many runs of all studies.
-
-    They are numbers, claims, methods by problem, comparisons of claims, and level and order of
-    columns.
+    """The results of many runs of all studies: numbers, claims, methods by problem, and comparisons
+    of claims.
     """
 
     numbers: pd.DataFrame
     claims: pd.DataFrame
     methods: pd.DataFrame
     checks: pd.DataFrame
-    order_and_level: pd.DataFrame
 
     def select(self, study: str) -> "Evidence":
         """Return the evidence about a study."""
@@ -67,14 +64,14 @@ def read_study_results(
     summary: numbers, claims and methods by problem of all studies, if the scale has them. evidence:
     stands in place of the scale's own positions and verdicts.
     """
-    nothing = pd.DataFrame(columns=["study", "table", "metric", "quantity"])
+    nothing = pd.DataFrame(columns=["study", "table"])
     numbers, _, measured = summary or [nothing] * 3
     pages = {}
     for key, view in job.studies.items():
         files = dict.fromkeys(("claims", "claim_checks", "audit"), nothing)
         files |= {name: read(folder / key / f"{name}.csv") for name in view.files}
         counted, of_problems = (table[table["study"] == key] for table in (numbers, measured))
-        many = Evidence(*[nothing] * 5)
+        many = Evidence(*[nothing] * 4)
         if evidence and key in job.outcome:
             many = evidence.select(key)
             files |= {"claims": many.claims, "claim_checks": many.checks}
@@ -97,7 +94,6 @@ def read_study_results(
             assumptions=[_describe_assumption(key, each, view.labels) for each in view.assumptions],
             audit=list_rows(files["audit"]),
             families=_describe_families(of_problems, view.labels),
-            shown=[],
         )
     return pages
 
@@ -151,50 +147,20 @@ def _describe_table(
     counted: pd.DataFrame,
     evidence: Evidence,
 ) -> Row:
-    """Return a table: its numbers next to published ones, or its columns and rows."""
-    compared = isinstance(spec, Pivot) and bool(spec.published)
-    row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
+    """Return a table: its numbers next to published ones if a paper prints it, or its columns and
+    rows.
+    """
+    printed = isinstance(spec, Pivot) and bool(spec.published)
+    row["csv"] = f"{row['stem']}{'.comparison' * printed}.csv"
     table = read(folder / row["csv"])
-    if not compared:
+    if not printed:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": list_rows(table)}
-    counted, many, columns = (
-        rows[rows["table"] == row["name"]]
-        for rows in (counted, evidence.numbers, evidence.order_and_level)
-    )
+    counted, many = (rows[rows["table"] == row["name"]] for rows in (counted, evidence.numbers))
     cells = _list_numbers(row["address"], table, spec, counted, many, labels)
-    if not spec.printed:
-        return row | {"numbers": cells, "laid": None}
     return row | {
         "numbers": cells,
         "laid": _lay_out_table(folder / f"{row['stem']}.csv", spec, cells),
-        "order_and_level": _describe_order_and_level(columns, spec, labels),
     }
-
-
-def _describe_order_and_level(columns: pd.DataFrame, spec: Pivot, labels: Labels) -> str:
-    """Say how columns of printed means differ from ours, in order or level."""
-    told = []
-    for (metric, quantity), own in columns.groupby(["metric", "quantity"], sort=False):
-        outside = own[own["position"].isin(["below", "above"])]
-        for position, rows in outside.groupby("position", sort=False):
-            where = _format_heading(metric, "mean", spec, labels)
-            if len(own) > 1:
-                where += f", {len(rows)} of {len(own)} columns"
-            printed = _format_range(rows["printed"], rows["printed"])
-            ours = _format_range(rows["low95_predicted"], rows["high95_predicted"])
-            if quantity == "level":
-                what = f"the printed level, {printed}, lies {position} ours, {ours}"
-            else:
-                word = "is reversed" if (rows["printed"] < 0).all() else "differs from ours"
-                what = f"the methods' order {word} (rank correlation {printed}; ours {ours})"
-            told.append(f"{where}: {what}")
-    return ". ".join(told)
-
-
-def _format_range(low: pd.Series, high: pd.Series) -> str:
-    """Format the range between the least and the largest of some numbers."""
-    ends = naming.format_number(low.min()), naming.format_number(high.max())
-    return " to ".join(dict.fromkeys(ends))
 
 
 def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
@@ -222,37 +188,27 @@ def _list_numbers(
     many: pd.DataFrame,
     labels: Labels,
 ) -> list[Row]:
-    """Return the cells of a table that have a published number, and other methods' cells in the
-    same columns.
+    """Return the cells of a table, each with a published number.
 
-    many: rows of the evidence, which replace the table's own values. Added keys: keys, row, column
-    (printed names), address, beside (ours for the paper's number of runs), bar
-    (`charts.add_bars`).
+    many: rows of the evidence, which replace the table's own values. Added keys: row, column
+    (printed names), address, beside (ours for the paper's number of runs), bar (`charts.add_bars`).
     """
     keys = list_key_columns(comparison)
-    what = ["metric", "statistic"]
-    published = comparison["value_published"].notna()
+    names = [*keys, "metric", "statistic"]
     # `summary.list_numbers` keeps the order of a table's rows.
-    comparison["counted"] = False
-    if len(counted):
-        comparison.loc[published, "counted"] = counted["counted"].to_numpy()
-    cells = list_rows(comparison.groupby(what).filter(lambda rows: published[rows.index].any()))
-    positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
-    by_place = {
-        build_address(*(row[name] for name in positions[0])): row for row in list_rows(many)
-    }
-    for cell, position, name in zip(
-        cells, positions, build_cell_addresses(table, positions, spec.primary), strict=True
-    ):
+    comparison["counted"] = counted["counted"].to_numpy() if len(counted) else False
+    cells = list_rows(comparison)
+    by_place = {build_address(*(row[name] for name in names)): row for row in list_rows(many)}
+    for cell in cells:
+        place = build_address(*(cell[name] for name in names))
         # The evidence has the same columns, of many runs.
-        if row := by_place.get(build_address(*position.values())):
-            cell |= {name: value for name, value in row.items() if name in cell}
+        row = by_place.get(place, {})
+        cell |= {name: value for name, value in row.items() if name in cell}
         scaled = cell["value_ours_scaled"]
         cell |= {
-            "keys": {key: position[key] for key in keys},
-            "row": ", ".join(format_key(key, position[key], labels) for key in keys),
+            "row": ", ".join(format_key(key, cell[key], labels) for key in keys),
             "column": _format_heading(cell["metric"], cell["statistic"], spec, labels),
-            "address": name,
+            "address": f"{table}/{place}",
             "beside": cell["value_ours"] if scaled is None else scaled,
         }
     charts.add_bars(cells)
@@ -300,24 +256,19 @@ def _list_claims(study: str, content: StudyView, files: dict[str, pd.DataFrame])
 def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: StudyView) -> Row:
     """Return a claim with its comparisons.
 
-    Added keys: address, rule (the meaning of its count), why (a sentence on the decisive
-    comparison), comparisons, shown_in.
+    Added keys: address, rule (the meaning of its count), comparisons, shown_in.
     """
-    described, why = content.claims.get(claim["id"]), ""
+    described = content.claims.get(claim["id"])
     # What docs/outcome keeps may be of a check that the study does not have any more.
     checks = dict(enumerate(described.checks if described else (), 1))
     for row in comparisons:
         check = checks.get(row["check"])
         row["reference"] = sentences.find_threshold(check) if check else 0.0
         row["name"] = sentences.name_comparison(row, check, content.labels)
-        if row["decisive"] and check:
-            own = bool(claim["own_criterion"])
-            why = why or sentences.explain_verdict(row, check, content.labels, own)
     there = content.tables.keys() | content.figures.keys()
     return claim | {
         "address": build_address(study, claim["id"]),
         "rule": sentences.describe_count(described, claim["verdict"], claim["holds"]),
-        "why": why,
         "comparisons": comparisons,
         "shown_in": [name for name in (claim["artefact"] or "").split(", ") if name in there],
     }

@@ -120,9 +120,9 @@ for (const filter of document.querySelectorAll(".filter")) {
 }
 
 // Search: entries in which most of the words begin a word of theirs; of these, first the ones whose shown text has the words themselves.
-// An entry is an element with data-finds, its kind and further words that find it; or a run.
+// An entry is an element with data-finds, its kind and further words that find it.
 
-let index, unpacked = false; // Runs are entries, too: there is no search before they are unpacked.
+let index;
 const EMPTY = new Set("a an and are by can did do does for how i in is it its me my of on or s should the to was were what which with".split(" "));
 const LATER = ["method", "comparison", "assumption"];
 const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
@@ -139,25 +139,13 @@ function shownText(element, more) {
 function entriesOfPage() {
   return [...document.querySelectorAll("[data-finds]")].map((element) => {
     const [kind, ...rest] = element.dataset.finds.split(": "), more = rest.join(": ");
-    return [kind, element.id, shownText(element, more), more, LATER.includes(kind) || element.closest("tr.other")];
+    return [kind, element.id, shownText(element, more), more, LATER.includes(kind)];
   });
 }
 
-function entriesOfRuns() {
-  return Object.entries(data.studies).flatMap(([study, { shown, labels }]) => shown.flatMap((each) => {
-    const name = (word) => labels[word] ?? word.replaceAll("_", " ");
-    const where = (run) => (each.problem ? `on ${name(each.problem)}` : `of all problems, on ${name(data.runs[run].problem.split("/").at(-1))}`);
-    const runs = [["best feasible run", each.best], ["median feasible run", each.median], ["worst feasible run", each.worst],
-      [`failed run (${each.count - each.feasible} of ${each.count} fail), worst`, each.failed[0]]];
-    return runs.filter(([, run]) => run).map(([which, run]) => (
-      ["path", run, `${which} of ${name(each.method)} ${where(run)}, ${name(each.experiment)}`, `${study} ${each.method}`, Boolean(each.problem)]));
-  }));
-}
-
 function search() {
-  if (!unpacked) return;
   const words = wordsOf(query.value).filter((word) => !EMPTY.has(word));
-  index ??= [...entriesOfPage(), ...entriesOfRuns()].map(([kind, address, text, more, later]) => (
+  index ??= entriesOfPage().map(([kind, address, text, more, later]) => (
     { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")} `, own: ` ${wordsOf(text).join(" ")} ` }));
   const scored = index.map((each) => [words.filter((word) => each.all.includes(/^\d+$/.test(word) ? ` ${word} ` : ` ${word}`)).length, each]);
   const most = Math.max(...scored.map(([score]) => score));
@@ -204,3 +192,17 @@ document.addEventListener("keydown", (event) => {
     query.focus();
   }
 });
+
+// Pictures, which are packed
+
+async function unpack(packed) {
+  const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
+}
+
+for (const picture of document.querySelectorAll("[data-packed]")) {
+  const text = await unpack(picture.dataset.packed);
+  delete picture.dataset.packed;
+  Object.assign(picture, { loading: "lazy", src: URL.createObjectURL(new Blob([text], { type: "image/svg+xml" })) });
+}
+settle();
