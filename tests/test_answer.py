@@ -3,6 +3,7 @@ column takes another's place.
 """
 
 import json
+import math
 
 import numpy as np
 import pytest
@@ -190,6 +191,45 @@ def test_a_region_shares_no_memory_with_its_workspace():
     made = build_region(circles)
     assert not np.shares_memory(made.centres, circles.centres)
     assert not np.shares_memory(made.radii, circles.radii)
+
+
+@pytest.mark.parametrize(("largest", "field"), [(2**63 - 1, "evaluations"), (2**53, "tries")])
+def test_whole_numbers_are_accepted_up_to_the_largest(largest, field):
+    """Those of columns are, because numbers beyond would lose digits."""
+
+    def convert(number):
+        extra, count = ({}, number) if field == "evaluations" else ({"tries": number}, 1)
+        answer.convert_answer(PLAN._replace(extra=extra, evaluations=count))
+
+    for accepted in (largest, 0, *([-largest] if field == "tries" else [])):
+        convert(accepted)
+    for refused in (largest + 1, -1 if field == "evaluations" else -largest - 1):
+        with pytest.raises(answer.Unfit):
+            convert(refused)
+
+
+@pytest.mark.parametrize(("turn", "corners"), [(2e-8, 1), (-2e-8, 1), (0.5e-8, 0), (3.0, 1)])
+def test_a_path_through_way_points_is_that_of_all_legs(turn, corners):
+    """A turn at the way point is one more; the least radius is that of the tightest leg."""
+    x, y = math.cos(turn), math.sin(turn)
+    ends = LINE, LINE[1] + np.array([[0.0, 0.0], [x, y]])
+    extras = [{"turns": 1, "corners": 0, "least_radius": radius} for radius in (2.0, 3.0)]
+    legs = [
+        PLAN._replace(path=Path("polyline", points), objective=length, evaluations=3, extra=extra)
+        for points, length, extra in zip(ends, (8.0, 1.0), extras)
+    ]
+    joined = planning.join_answers(legs)
+    assert joined.path.points.tolist() == [*LINE.tolist(), ends[1][1].tolist()]
+    assert (joined.objective, joined.evaluations, joined.history.tolist()) == (9.0, 6, [9.0])
+    assert joined.extra == {"turns": 2 + corners, "corners": corners, "least_radius": 2.0}
+    assert planning.join_answers(legs[:1]) is legs[0]
+    nothing = legs[1]._replace(path=None)
+    assert planning.join_answers([legs[0], nothing]) is nothing
+
+
+@pytest.mark.parametrize(("radius", "kept"), [(2.0 - 1e-9, True), (2.0 - 3e-9, False)])
+def test_a_radius_is_kept_up_to_rounding(radius, kept):
+    assert planning.is_radius_kept(2.0, radius) == kept
 
 
 @pytest.mark.parametrize("claims", [(True, True), (True, False), (False, True)])

@@ -102,3 +102,41 @@ def test_families_stand_worst_first_and_say_where_a_method_adds_something(rows):
     assert text["scenarios"].tolist() == table["family"].tolist()
     assert text["free paths"].tolist() == ["75 %", "100 %", "100 %"]
     assert text.index[0] == "Curves"
+
+
+def test_a_family_of_problems_in_closed_form():
+    """Of four problems the second is shorter than the rounded path by more than rounding, the third
+    turns less tightly by more than 3 %, and the last has no path without corners.
+    """
+    rows = pd.DataFrame(
+        {
+            **dict.fromkeys(["study", "family", "method"], "one"),
+            "runs": [10, 30, 20, 20],
+            "free": [0.4, 0.8, 0.5, 0.6],
+            "cpu_ms": [1, 3, 2, 9],
+            "round": [1, 2, 3, 0],
+            "cornered": [3, 22, 7, 12],
+            "excess": [0.1, 0.4, 0.2, 0.3],
+            "rounded": [0.1 + 0.9e-6, 0.4 + 1.1e-6, 0.2, math.nan],
+            "curvature": 1.0,
+            "rounded_curvature": [1.02, 1.02, 1.04, math.nan],
+            "proposed": True,
+        }
+    )
+    table = methods.group_by_family(rows)
+    expected = {
+        "problems": 4,
+        "runs": 80,
+        "free": 50 / 80,
+        "worst": 0.4,
+        "round": 6,
+        "cornered": 44,
+        "excess": 0.25,
+        "rounded": 0.2,
+        "cpu_ms": 2.5,
+        "both": 3,
+        "adds": 2,
+    }
+    assert table.loc[0, [*expected]].to_dict() == pytest.approx(expected, rel=1e-5)
+    text = methods.format_table(table, {}).iloc[0].to_list()
+    assert text[1:] == ["62.5 %, worst 40 %", "44 of 50", "25 %", "20 %", "2 of 3", "2.5 ms"]

@@ -2,25 +2,46 @@
 can beat.
 """
 
+import itertools
 import math
+from dataclasses import replace
+from pathlib import Path as File
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bezierplan.geometry.region import build_region
 from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
 from bezierplan.running.simulation import bounds, cells, evasion, motion_check
-from bezierplan.running.simulation.circles import ARRIVED, STOPPED, is_near
+from bezierplan.running.simulation.circles import (
+    ARRIVED,
+    BLOCKED,
+    DUE,
+    ENDED,
+    STOPPED,
+    follow,
+    is_near,
+)
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
-from bezierplan.running.simulation.ways import build_way
+from bezierplan.running.simulation.ways import (
+    build_drivable,
+    build_polyline,
+    build_way,
+    find_first_collision,
+)
+from bezierplan.schema import checked
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
+DATA = checked.read(File(__file__).parent / "data" / "drives.yaml")
+EVENTS = {"arrived": ARRIVED, "blocked": BLOCKED, "due": DUE, "stopped": STOPPED, "ended": ENDED}
 BLIND = Policy(replan="never", waits=False)
 WAITS = BLIND.but(waits=True, sees="after", brake=1.0)
 REPLANS = WAITS.but(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
@@ -114,6 +135,35 @@ def test_grazing_collisions_between_steps_are_found(excess, hits, at):
         )
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_a_motion_is_judged_as_at_many_moments(seed):
+    """Of a robot that sometimes stands, among circles that meet walls."""
+    rng = np.random.default_rng(seed)
+    centres, speeds = rng.uniform(5, 15, (3, 2)), rng.uniform(-4, 4, (3, 2))
+    world = circles(*np.column_stack([centres, rng.uniform(0.3, 1.5, 3), speeds]))
+    first = 1.0 + seed % 3 / 3
+    times = np.sort(np.append(rng.uniform(first, 7, 6), [first, 3.0, 3.0, 7.0]))
+    points = np.clip(10 + np.cumsum(rng.normal(size=(10, 2)), axis=0), 0, 20)
+    # A vertex may stand twice, at one time or at two.
+    twice = np.searchsorted(times, 3.0)
+    points[[twice + 1, -1]] = points[[twice, -2]]
+    verdict = motion_check.check(Motion(points, times), world)
+    moments = np.linspace(first, 7, 6001)
+    robot = np.column_stack([np.interp(moments, times, points[:, axis]) for axis in range(2)])
+    steps = np.minimum(np.floor(moments).astype(int), 6)
+    there = np.array([world.at(step) for step in range(9)])
+    part = (moments - steps)[:, None, None]
+    places = there[steps] + part * (there[steps + 1] - there[steps])
+    apart = (np.linalg.norm(robot[:, None] - places, axis=-1) - world.radii).min(axis=1)
+    least = [apart[steps == step].min() for step in range(int(first), 7)]
+    assert verdict.clearance == pytest.approx(least, abs=0.02)
+    if min(least) > 0:
+        assert math.isnan(verdict.collision_at)
+    else:
+        assert verdict.collision_at == pytest.approx(moments[apart < 0][0], abs=0.002)
+        assert verdict.depth == pytest.approx(-min(least), abs=0.02)
+
+
 def test_cells_collide_only_while_they_are_occupied():
     maps = draw_maps(["....", "....", "...."], ["....", ".##.", "...."])
     world = ChangingCells(maps, np.array([2.0]), 1.0, 9)
@@ -122,6 +172,10 @@ def test_cells_collide_only_while_they_are_occupied():
     assert not collides(early, world)
     # At the change it stands at x = 1.5, in a cell that becomes occupied.
     assert motion_check.check(late, world).collision_at == pytest.approx(2.0)
+    # It turns within a step, and enters a cell after a third more of a step.
+    bend = Motion(np.array([[0.5, 0.5], [0.5, 1.5], [3.5, 1.5]]), np.array([2.2, 2.4, 4.4]))
+    assert motion_check.check(bend, world).collision_at == pytest.approx(2.4 + 1 / 3)
+    assert motion_check.check(bend, world).clearance == pytest.approx([0, 0, 0], abs=1e-6)
     # One cell is occupied when it comes.
     assert motion_check.check(
         Motion(line, np.array([1.8, 4.8])), world
@@ -164,16 +218,11 @@ def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
 
 
 def clearances(points, at, begin, end, centres, drift, pace):
-    """Least distance of each circle's centre to a drive between two lengths of way, chord by
-    chord.
-    """
+    """Least distance of each circle's centre to a drive between two lengths of way."""
     lengths = np.concatenate([[begin], at[(at > begin) & (at < end)], [end]])
     places = np.column_stack([np.interp(lengths, at, points[:, axis]) for axis in range(2)])
     relative = places - centres[:, None] - drift[:, None] * ((lengths - begin) / pace)[:, None]
-    legs = np.diff(relative, axis=1)
-    size = np.maximum((legs**2).sum(axis=-1), 1e-300)
-    share = np.clip(-(relative[:, :-1] * legs).sum(axis=-1) / size, 0.0, 1.0)
-    return np.linalg.norm(relative[:, :-1] + share[..., None] * legs, axis=-1).min(axis=1)
+    return shapely.distance(shapely.linestrings(relative), shapely.Point(0.0, 0.0))
 
 
 @given(st.integers(0, 10**6))
@@ -196,6 +245,18 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
             radii[k] = least[k] + off - margin
             if radii[k] + margin > 0.0:
                 assert is_near(*along, begin, end, centres, drift, radii, margin, pace) == near
+
+
+@pytest.mark.parametrize(("circle", "changed", "event", "progress"), DATA["followed"])
+def test_a_robot_follows_its_way_until_there_is_something_to_decide(
+    circle, changed, event, progress
+):
+    """Ten steps, from the third on, for a way of 20."""
+    world = circles(DATA["circles"][circle], end=13)
+    policy = Policy.model_validate({"replan": "when_blocked", "waits": False} | changed)
+    way = build_way(np.array([(0.0, 10.0), (20.0, 10.0)]))
+    found, lengths = follow(world, way, 3, policy)
+    assert (found, lengths.tolist()) == (EVENTS[event], progress)
 
 
 # A cell in the middle becomes occupied.
@@ -252,6 +313,9 @@ def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
         grid, build_way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))
     ) == pytest.approx(0.5)
     assert cells.find_way_out(grid, build_way(np.array([[0.5, 1.5], [3.5, 1.5]]))) == 0.0
+    wall = from_lines(["...", ".##"], 1.0, "m")
+    bend = np.array([[1.5, 0.5], [2.5, 0.5], [2.5, 1.5]])
+    assert cells.find_way_out(wall, build_way(bend)) == pytest.approx(1.5)
     # Touching is no way out that is needed.
     assert cells.find_way_out(grid, build_way(np.array([[2.0, 1.5], [3.5, 1.5]]))) == 0.0
     assert cells.find_way_out(grid, build_way(np.array([[2.5, 1.5], [2.6, 1.6]]))) == 0.0
@@ -341,26 +405,95 @@ def test_a_change_that_no_robot_can_meet_before_leaves_the_new_map_alone():
     assert bounds.bound_arrival(opens, problem) == 7.0
 
 
+@pytest.mark.parametrize(("replan", "pace", "plans", "arrival", "waited"), DATA["at a gate"])
+def test_a_robot_stands_before_a_gate_until_it_opens(replan, pace, plans, arrival, waited):
+    """Of 7 to its target the robot drives 2.5 before: the gate begins 1 farther."""
+    world, problem = gate(5.5, "....#...", "........")
+    policy = Policy(replan=replan, every=2, brake=1.0)
+    ride = drive(replace(world, pace=pace), problem, policy, straight)
+    assert (ride.arrived, ride.waited, ride.motion.times[-1]) == pytest.approx((1, waited, arrival))
+    assert [plan.time for plan in ride.plans] == plans
+    lengths = [plan.length for plan in ride.plans]
+    assert lengths == pytest.approx([7.5 - ride.motion.at(time)[0] for time in plans])
+    late = drive(replace(world, pace=pace, end=6), problem, policy, straight)
+    assert (late.arrived, late.motion.times[-1]) == (False, 6.0)
+    assert late.motion.at(6.0)[0] == pytest.approx(3.0 + 0.5 * pace)
+
+
+@pytest.mark.parametrize(("replan", "every", "time", "event"), DATA["events"])
+def test_the_next_event_is_a_change_a_plan_or_the_end(replan, every, time, event):
+    world = ChangingCells(draw_maps(["."], ["."], ["."]), np.array([2.0, 5.5]), 1.0, 9)
+    assert cells.find_next_event(world, time, Policy(replan=replan, every=every)) == event
+
+
+@pytest.mark.parametrize(("begin", "blocked"), [(0, 2.5), (1, 2.5), (3.5, 5.5), (6.5, math.inf)])
+def test_a_way_is_blocked_where_it_next_enters_a_cell(begin, blocked):
+    grid = from_lines([".....", "....#", ".....", "...#."], 1.0, "m")
+    way = build_way(np.array([(0.5, 0.5), (4.5, 0.5), (4.5, 3.5)]))
+    assert cells.find_blocked_length(grid, way, begin) == pytest.approx(blocked)
+
+
+def test_a_way_leaves_out_points_that_repeat_the_last_one():
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
+    assert [each.tolist() for each in build_way(points)] == [points[[0, 1, 3]].tolist(), [0, 1, 2]]
+
+
+@pytest.mark.parametrize(("curve", "spacing", "count"), DATA["chords"])
+def test_chords_of_a_curve_are_as_long_as_their_spacing(curve, spacing, count):
+    """Of legs of 10 in all; two chords of each piece at least."""
+    points = np.array([[0.0, 10.0], [5.0, 10.0], [5.0, 7.0], [7.0, 7.0]])
+    found = build_polyline(Path(curve, points), spacing)
+    assert len(found) == count
+    assert found[[0, -1]].tolist() == points[[0, -1]].tolist()
+
+
+def test_only_curves_get_further_points_where_chords_enter_an_obstacle():
+    """A quarter of a circle around one that it touches; a polyline is driven as it is."""
+    k = 10 + 2 * 4 / 3 * math.tan(math.pi / 8)
+    arc = Path("bezier", np.array([[12.0, 10.0], [12.0, k], [k, 12.0], [10.0, 12.0]]))
+    bare = build_region(circles((10, 10, 1.999, 0, 0)).obstacles(0))
+    found = build_drivable(arc, 0.5, bare)
+    assert len(found) > len(build_polyline(arc, 0.5))
+    assert math.isinf(find_first_collision(found, bare))
+    straight_through = Path("polyline", arc.points[[0, 3]])
+    assert build_drivable(straight_through, 0.5, bare) is straight_through.points
+
+
 # Stepping aside
 
 FORESEES = REPLANS.but(knows="velocities")
 
 
-def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
-    coming = circles((10, 6.4, 2, 0, 0.5))
-    place = np.array([10.0, 9.0])
-    aside = evasion.find_refuge(coming, place, 0, FORESEES)
-    assert math.dist(aside, place) == pytest.approx(1.0)
-    assert aside[1] > 9.0
-    passing = circles((10, 6.0, 2, 0.5, -0.2))
-    assert np.array_equal(evasion.find_refuge(passing, place, 0, FORESEES), place)
-
-
-def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
-    chasing = circles((6, 10, 2, 0.9, 0))
-    place = np.array([9.0, 10.0])
-    aside = evasion.find_refuge(chasing, place, 0, FORESEES)
-    assert abs(aside[1] - place[1]) > 0.3
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("sees", ["before", "after"])
+@pytest.mark.parametrize("knows", ["positions", "velocities"])
+def test_a_refuge_is_at_the_end_of_the_best_step(seed, sees, knows):
+    """Of all directions, lengths and moments."""
+    rng = np.random.default_rng(seed)
+    robot = rng.uniform((0, 4), (4, 16))
+    centres, speeds = robot + rng.normal(scale=3, size=(3, 2)), rng.uniform(-1, 1, (3, 2))
+    world = circles(*np.column_stack([centres, [0.5, 1.0, 1.5], speeds]), pace=0.8)
+    policy = FORESEES.but(sees=sees, knows=knows, check_margin=0.3)
+    looked = 4 + (sees == "after")
+    drift = (world.at(looked + 1) - world.at(looked)) * (knows == "velocities")
+    begin = world.at(looked) - drift * (sees == "after")
+    moments = np.linspace(0, 20, 4001)
+    best, place = (-math.inf, 0.0, 0.0), robot
+    for k, steps in itertools.product(range(-1, 32), (1, 2, 4, 8)):
+        turn = math.pi * k / 16
+        move = 0.8 * steps * (k >= 0) * np.array([math.cos(turn), math.sin(turn)])
+        move = (np.clip(robot + move, 0, 20) - robot) / steps
+        drive = np.minimum(moments, steps)[:, None] * move
+        relative = (robot + drive)[:, None] - begin - moments[:, None, None] * drift
+        apart = (np.linalg.norm(relative, axis=-1) - world.radii).min(axis=1)
+        met = moments[apart < 0.3 - 1e-9]
+        free = min(met, default=20.0)
+        rank = min(apart[moments <= 1].min(), 0.0), free, apart[200]
+        if rank > best:
+            best, place = rank, robot + move
+        if k < 0 and rank[:2] == (0.0, 20.0):
+            break
+    assert evasion.find_refuge(world, robot, 4, policy) == pytest.approx(place)
 
 
 def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
@@ -378,32 +511,11 @@ def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     assert lengths.sum() > 0
 
 
-def test_a_robot_checks_no_farther_than_its_horizon():
-    world = circles((15, 10, 2, 0, 0))
-    seen, unseen = (
-        drive(world, across(world), REPLANS.but(horizon=horizon), straight)
-        for horizon in (math.inf, 3.0)
-    )
-    assert seen.replans > unseen.replans
-
-
 @pytest.mark.parametrize(("beyond", "outside"), [(1e-4, True), (2e-9, True), (0.0, False)])
 def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
     points = np.array([[1.0, 10.0], [20.0 + beyond, 10.0], [1.0, 10.0]])
     verdict = motion_check.check(Motion(points, np.array([0.0, 19.0, 38.0])), circles())
     assert math.isfinite(verdict.collision_at) == outside
-
-
-@pytest.mark.parametrize(
-    ("dx", "dy", "ex", "ey", "nearest"),
-    [
-        (2.0, 1.0, -4.0, 0.0, 1.0),  # it passes by: the foot of the perpendicular
-        (2.0, 1.0, 3.0, 1.0, 5.0**0.5),  # it goes away: where it is
-        (5.0, 1.0, -2.0, 0.0, 10.0**0.5),  # it does not come as far: where it ends
-    ],
-)
-def test_nearest_place_on_a_step_to_the_origin(dx, dy, ex, ey, nearest):
-    assert motion_check.measure_nearest(dx, dy, ex, ey) == pytest.approx(nearest)
 
 
 @pytest.mark.parametrize(("waits", "event", "end"), [(False, ARRIVED, 6.0), (True, STOPPED, 1.5)])
