@@ -132,7 +132,7 @@ def _read_out(text: str) -> Path:
 
 
 def check_suffix(option: str, file: Path | None, suffixes: Collection[str]) -> None:
-    """Raise Fault for a file to write whose suffix is not among those that the option takes."""
+    """Raise Fault for an output file whose suffix is not among those that the option takes."""
     if file and file.suffix not in suffixes:
         raise Fault(f"{option}: {file}; expected a file that ends in {', '.join(suffixes)}")
 

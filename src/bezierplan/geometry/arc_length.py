@@ -16,7 +16,7 @@ def measure_lengths(points: np.ndarray) -> np.ndarray:
 
 
 def find_places(points: np.ndarray, at: np.ndarray, values: np.ndarray | float) -> np.ndarray:
-    """Return places (..., 2), at some values, of what moves straight from point to point (n, 2).
+    """Interpolate linearly between points (n, 2): return the places (..., 2) at some values.
 
     at: (n,) the value at each point.
     """

@@ -139,7 +139,7 @@ class Study(Experiments, ArtefactsFile):
         return [shorten_path(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 
     def variants(self) -> dict[str, str]:
-        """Return the method with whose published numbers each variant is compared, by variant."""
+        """Return the methods with whose published numbers variants are compared, by variant."""
         return {
             name: method.variant_of for name, method in self.methods.items() if method.variant_of
         }

@@ -221,8 +221,10 @@ def draw_points(
 
 
 def draw_effects(check: OfRuns, comparison: Contrast, name: str) -> np.ndarray:
-    """Draw the effect of the check's statistic by bootstrap (DRAWS,), or return the normal
-    approximation; NaN with an empty cell.
+    """Return draws (DRAWS,) of the effect of the check's statistic: by bootstrap, or normal
+    quantiles for booleans and for many values; NaN if a cell of numbers is empty.
+
+    name: seeds the draws.
     """
     statistic = check.point_statistic
     if comparison.boolean and statistic == "mean" and not check.relative:

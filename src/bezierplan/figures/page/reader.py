@@ -164,7 +164,8 @@ def _describe_table(
 
 
 def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
-    """Lay a table out as the paper prints it.
+    """Read a table in the paper's layout from its csv file, with the printed number beside ours in
+    each cell.
 
     head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
     the number is None if nothing is published.

@@ -15,10 +15,10 @@ _SHORTEST_INTERVAL = 1e-11
 
 @compile_kernel
 def find_first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
-    """Find the first collision of a path.
+    """Return where a path of Bézier pieces first collides, and the number of intervals examined.
 
-    Returns the piece's number plus the parameter in it (infinite if there is no collision), and the
-    number of intervals examined.
+    pieces: (pieces, degree + 1, 2). The place is the piece's number plus the parameter in it,
+    infinite if there is no collision.
 
     Depth first, left half first: everything before the current interval is certified free.
     """

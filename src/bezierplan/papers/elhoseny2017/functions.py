@@ -98,11 +98,11 @@ def q_example(
 def fluctuation(
     check: "FunctionCheck", results: "Experiments", published: "Published", *, most: float
 ) -> "FunctionResult":
-    """Judge claim C10: runs on one field differ, by a standard deviation of at most a share of
-    their mean.
+    """Judge claim C10: runs on the same field differ, but their standard deviation is at most a
+    share of their mean.
 
-    The effect is the largest coefficient of variation on a field, with its bootstrap interval; the
-    units are the runs on it.
+    The effect is the coefficient of variation on the field where its bootstrap interval ends
+    highest; the units are the runs on it.
     """
     fields = []
     for name in check.experiments:

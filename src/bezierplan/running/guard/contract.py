@@ -245,8 +245,8 @@ def _check_budget(plans: list[Plan], budget: float) -> str:
 
 
 def _check_claims(plans: list[Plan], feasible: list[bool], problem: Problem, exact: bool) -> str:
-    """Check that no path leads to a sealed target and that an exact planner claims no path wrongly;
-    return the counts as text.
+    """Check that no free path leads to a sealed target, and that each path which an exact planner
+    claims feasible is so; return the counts as text.
     """
     claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]
     detail = f"{len(claims)} paths claimed feasible, {sum(claims)} by the checker"

@@ -29,7 +29,7 @@ from bezierplan.running.jobs.watchdog import PlannerFailure, describe_end
 logger = logging.getLogger(__name__)
 
 MOST_PRINTED = 20_000
-"""Most characters of a planner's own output that the log keeps."""
+"""Most bytes of a planner's own output that the log keeps."""
 
 STARTS = 60.0
 """Seconds that a process may take to import a planner's file, and at least until its first run

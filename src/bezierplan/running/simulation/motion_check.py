@@ -133,7 +133,7 @@ def measure_nearest(dx, dy, ex, ey):
 
 @allocation_free
 def _compute_relative(points, i, share, before, after, part):
-    """Return the robot's place on leg i, relative to a circle that has made a part of its step."""
+    """Return the robot's place at a share of leg i, relative to a circle at a part of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
     y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
     return x - before[0] - part * (after[0] - before[0]), y - before[1] - part * (

@@ -81,7 +81,9 @@ def world(
 
 
 def _moment(change: dict, first: Grid, length: Callable[[Grid], float], pace: float) -> float:
-    """Return when a change happens, in steps."""
+    """Return the step at which a change happens: as given, or once a robot has made a share of the
+    shortest way from cell to cell.
+    """
     if "at" in change:
         return float(change["at"])
     # A share of the way of a robot that follows the shortest path from cell to cell.

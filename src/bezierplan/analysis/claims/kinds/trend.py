@@ -105,7 +105,7 @@ def _compute_weights(x: Sequence[float]) -> np.ndarray:
 
 
 def _compute_slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
-    """Compute the least-squares slopes over x of units that have a finite value at 3 of x or more.
+    """Compute the least-squares slopes over x of units with finite values at 3 or more values of x.
 
     They are ranked, so those that should be equal, or zero, must not differ by how a processor
     rounds: slopes are rounded to a share of the steepest, and a constant has none.
