@@ -77,7 +77,6 @@ def done(command, status=0, **options):
 def shell(away, command, place, core=False, status=0):
     """What a command line prints in a shell that knows nothing of the clone."""
     variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    variables["XDG_CACHE_HOME"] = str(away / "cache")
     variables["PATH"] = f"{away / 'venv/bin'}:{variables['PATH']}"
     if core:
         variables["PYTHONPATH"] = str(away / "core")
