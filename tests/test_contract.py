@@ -21,7 +21,7 @@ from bezierplan.study.jobs import build_chunk
 pytestmark = pytest.mark.usefixtures("planners_are_read_here")
 
 # Of searches: the contract is that of a long one.
-FEW = {"generations": 5, "iterations": 5}
+FEW = {"generations": 5, "iterations": 5, "first_draws": 400}
 
 
 def settings_in_force() -> dict[str, dict]:
