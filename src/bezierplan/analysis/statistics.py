@@ -170,8 +170,8 @@ def compute_normal_draws(centre: float, error: float) -> np.ndarray:
 
 
 def _is_normal(name: str, values: np.ndarray) -> bool:
-    """Return whether a statistic of many values has a normal approximation that follows from values
-    (n,).
+    """Return whether the normal approximation of a statistic can be computed from values (n,): not
+    for extremes, a single value or infinite ones.
     """
     return name not in WITHOUT_INTERVAL and len(values) > 1 and bool(np.isfinite(values).all())
 

@@ -89,8 +89,8 @@ class Plan(NamedTuple):
         stop: str,
         extra: dict[str, float | bool] | None = None,
     ) -> "Plan":
-        """Build the plan of a planner that evaluates one path and considers it free, or finds
-        none.
+        """Build the answer of a planner that evaluates one path: it claims that any path is free,
+        and None means that it found none. Nothing is tested here.
         """
         return cls(path, length, path is not None, 1, np.array([length]), stop, extra or {})
 

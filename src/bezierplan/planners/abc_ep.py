@@ -141,7 +141,7 @@ def _build_first_path(rng, occupied, start, target, rules):
 
 @compile_kernel
 def _append_next_point(rng, occupied, target, path, count, rules):
-    """Append, in place, the best point found to the first `count` of a path; return its cost."""
+    """Append the best point found to a path of `count` points, in place; return its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)

@@ -430,7 +430,7 @@ def find_names(
 def _find_names(
     content: Any, annotation: Any, metadata: Any, path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Yield the names in a value of a field, as `find_names` does."""
+    """Yield the names in a field's value of what is defined elsewhere, as `find_names` does."""
     if typing.get_origin(annotation) is Annotated:
         metadata, annotation = annotation.__metadata__, annotation.__origin__
     parts = typing.get_args(annotation) or (None,)

@@ -48,7 +48,9 @@ def _is_untestable(claim: Claim) -> bool:
 
 
 def _describe_claim(study: Study, claim: Claim, row: dict[str, str] | None, scale: str) -> str:
-    """Return the verdict on a claim in words, empty without a row of docs/outcome (`row`)."""
+    """Describe the verdict that docs/outcome keeps for a claim (`row`); empty without a row, unless
+    the claim is untestable.
+    """
     if _is_untestable(claim):
         return describe_verdict("untestable", 0)
     if not row:

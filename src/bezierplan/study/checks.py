@@ -127,8 +127,8 @@ class Checks:
     def check_entries(
         self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]
     ) -> None:
-        """Check each entry of a section of a file with `work`, and drop the entries that have a
-        fault.
+        """Call `work` on each entry of a section of a file, and drop the entries that have a fault
+        from `entries`, in place.
         """
         # A copy, because entries with a fault leave the mapping.
         for name, entry in [*entries.items()]:

@@ -92,7 +92,7 @@ class Study(Experiments, ArtefactsFile):
         return [f"{choose_tree(name)}/{name}.{ending}" for ending in endings]
 
     def find_tables_of_runs(self) -> dict[str, Pivot]:
-        """Return the tables of runs by name."""
+        """Return those of the study's tables that summarise runs (kind `pivot`), by name."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def find_published_file(self, table: str) -> str | None:
@@ -129,7 +129,7 @@ class Study(Experiments, ArtefactsFile):
 
     def verdict_file(self) -> str | None:
         """Return the file with the sentences of the study's verdict, relative to the working
-        folder, or None.
+        folder; None if it has none.
         """
         file = self.folder / "verdict.yaml"
         return shorten_path(file) if file.is_file() else None

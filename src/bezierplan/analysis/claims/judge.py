@@ -159,8 +159,8 @@ def _describe_verdict(
 def _judge_checks(
     checks: list[ClaimCheck], claim: Claim, name: str, material: Material
 ) -> tuple[list[MarkedComparison], str]:
-    """Judge all checks of a claim; return their comparisons with marks, and why the claim cannot be
-    tested (empty if it can).
+    """Judge all checks of a claim; return their comparisons with marks, and the reason why a
+    primary check cannot be tested (empty if all can).
     """
     judgements, obstacle = [], ""
     for number, written in enumerate(checks, start=1):

@@ -150,7 +150,9 @@ def _choose_shorter(one, other, lattice):
 
 @allocation_free
 def _replace(paths, sizes, i, child, rules, marks):
-    """Replace a path, in place, by a child if it fits; by some rules it loses its loops before."""
+    """Write a child over a path, in place, unless it is longer than there is room; by some rules
+    its loops are cut first.
+    """
     size = cut_loops(child, marks) if rules.shorter_parts else len(child)
     if size <= paths.shape[1]:
         sizes[i] = put(child[:size], paths[i], 0)

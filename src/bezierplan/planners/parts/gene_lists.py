@@ -195,7 +195,9 @@ def _is_kind(pool, place, head):
 
 @allocation_free
 def _add_kind(pool, place, kind, kinds):
-    """Add the chromosome at a place as a new kind without copies, and its Q with the others."""
+    """Add the chromosome at a place of the pool as a new kind, with its Q with each kind before it;
+    its copies start at 0, and the caller counts this one.
+    """
     kinds.head[kind], kinds.copies[kind] = place, 0.0
     ones, genes = pool.ones[place, : pool.count[place]], len(kinds.marks)
     for gene in ones:
