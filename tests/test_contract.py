@@ -142,8 +142,8 @@ def failed(planner, settings):
     return [finding for finding in findings if not finding.passed]
 
 
-def test_every_other_planner_of_the_package_is_run_by_a_study():
-    assert sorted(SETTINGS) == list_planners()
+def test_an_experiment_runs_each_planner_of_the_package():
+    assert set(list_planners()) - SETTINGS.keys() == set(), "no experiment of a study runs these"
 
 
 @pytest.mark.parametrize("planner", list_planners())
