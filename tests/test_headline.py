@@ -45,8 +45,8 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         )
     ) == (
         "Of 3 printed numbers our range is narrow enough to test 2: 1 lie inside it, 1 outside. "
-        "For the other 1 it is so wide that it holds half of the paper's other numbers of the same "
-        "kind. Wherever they lie, 1 of the 2 prove nothing about the paper "
+        "For the other 1 it is so wide that it holds at least half of the paper's other numbers of "
+        "the same kind. Wherever they lie, 1 of the 2 prove nothing about the paper "
         "(no exact map is printed: 1). Only 1 could confirm a paper, and 0 do."
     )
     judged = claims(

@@ -149,18 +149,19 @@ def describe_where(rows: Sequence[Row], checks: Sequence[ClaimCheck], labels: La
     for row in rows:
         group, other, place = name_terms(row, checks[row["check"] - 1], labels)
         statistic = "" if row["statistic"] == "rank" else row["statistic"]
-        measured = filter(None, [statistic, row["metric"] or row["test"]])
-        against = f"against {other}" if other else ""
-        parts.append((group, against, place, " ".join(measured).replace("_", " ")))
-    differing = [each for each in zip(*parts) if len({*each}) > 1]
+        measured = " ".join(filter(None, [statistic, row["metric"] or row["test"]]))
+        parts.append((group, other and f"against {other}", place, measured.replace("_", " ")))
+    # What all comparisons share is left out, as in `MGA against GA, Case 1`.
+    told_apart = [each if len({*each}) > 1 else [""] * len(rows) for each in zip(*parts)]
     names = [
-        ", ".join(filter(None, each)).replace(", against", " against") for each in zip(*differing)
+        ", ".join(filter(None, (f"{group} {other}".strip(), place, measured)))
+        for group, other, place, measured in zip(*told_apart)
     ]
     told = []
     for mark, word in _WORDS.items():
         own = [name for name, row in zip(names, rows) if row["mark_family"] == mark]
         listed = "; ".join(own) if len(own) <= MOST_LISTED else f"{len(own)} of {len(rows)}"
-        told += [f"{word}: {listed}"] if own else []
+        told += [f"{word}: {listed}"] if any(own) else []
     return ". ".join(told) if len(told) > 1 else ""
 
 

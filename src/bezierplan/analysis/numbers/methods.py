@@ -159,6 +159,7 @@ def format_table(rows: pd.DataFrame, labels: naming.Labels) -> pd.DataFrame:
         {
             "scenarios": rows["family"].to_list(),
             "free paths": [
+                # The worst problem's where it is another one in print.
                 ", worst ".join(dict.fromkeys(map(_format_share, (row.free, row.worst))))
                 for row in rows.itertuples()
             ],

@@ -176,12 +176,12 @@ def build_pivot(
 ) -> pd.DataFrame:
     """Build a table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
-    labels: how names are printed. published: as from `comparison.read_published`,
-    None without. Column levels are
-    joined into one name, such as `objective value: smooth`; index levels stay columns of the csv
-    file. A column of a table of the paper's form has the decimals of the printed one, or as many as
-    its smallest number needs for `SIGNIFICANT` digits; in any other table, where some runs have no
-    value, a column beside the values says how many have one (`_add_counts`).
+    labels: how names are printed. published: as from `comparison.read_published`; None for a table
+    without printed numbers. Column levels are joined into one name, such as `objective value:
+    smooth`; index levels stay columns of the csv file. A column of a table with printed numbers has
+    their decimals, or as many as its smallest number needs for `SIGNIFICANT` digits; in any other
+    table, where some runs have no value, a column beside the values says how many have one
+    (`_add_counts`).
     """
     table = place_cells(compute_cells(results, spec, spec.key_columns), spec, results.problems)
     values = [

@@ -26,8 +26,8 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     )
     if vague := len(numbers) - len(told):
         text += (
-            f" For the other {vague} it is so wide that it holds half of the paper's other numbers "
-            "of the same kind."
+            f" For the other {vague} it is so wide that it holds at least half of the paper's "
+            "other numbers of the same kind."
         )
     reasons = told["reason"].fillna("")
     worth = told[reasons == ""]
