@@ -192,7 +192,7 @@ def _append_next_point(rng, occupied, target, path, count, rules):
 
 @allocation_free
 def _draw(rng, low, high, point):
-    """Draw a random point of a box, in place."""
+    """Draw a point uniformly from a box, in place."""
     for k in range(2):
         point[k] = low[k] + (high[k] - low[k]) * rng.random()
 

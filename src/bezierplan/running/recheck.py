@@ -122,7 +122,7 @@ def _map(function: Callable[[Any], Any], items: list[Any], processes: int) -> It
 
 
 def merge_verdicts(verdicts: Iterable[RunsVerdict]) -> RunsVerdict:
-    """Merge several verdicts into one."""
+    """Add several verdicts up: their counts, and their faults and digests in order."""
     return RunsVerdict(*(sum(parts[1:], parts[0]) for parts in zip(RunsVerdict(), *verdicts)))
 
 

@@ -96,7 +96,9 @@ def list_keys(model: type[Model]) -> dict[str, FieldInfo]:
 
 
 def parse(model: type[M], content: Any, *location: str) -> M:
-    """Return the content of a file as a model. Raises Fault, beginning with a location."""
+    """Validate loaded content of a file, plain values, and return it as a model. Raises Fault, each
+    line beginning with the location.
+    """
     sound, faults, _ = parse_sound_part(model, content, *location)
     if faults:
         raise Fault(*faults)

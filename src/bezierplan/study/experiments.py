@@ -350,8 +350,8 @@ class Experiments(ExperimentsFile):
         )
 
     def find_changed_settings(self, method: str, problem: str = "") -> dict[str, Any]:
-        """Return the settings of a method that other values of assumptions change: none, because
-        assumptions stand in another file.
+        """Return no settings: `Study`, which knows the assumptions, overrides this with those that
+        their chosen values change.
         """
         return {}
 

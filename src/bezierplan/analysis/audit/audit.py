@@ -161,7 +161,8 @@ def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> I
 
 
 def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dict]:
-    """Check that mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2.
+    """Yield rows on mean ranks of k rows: that they lie between 1 and k, that they add to
+    k (k + 1) / 2, and whether Friedman's test tells the rows apart.
 
     columns: the key columns within whose values rows are ranked; columns that the file lacks do not
     matter.

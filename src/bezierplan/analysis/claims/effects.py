@@ -151,8 +151,8 @@ class MarkedComparison(NamedTuple):
 
 
 def mark_events(check: OfRuns, values: np.ndarray) -> np.ndarray:
-    """Return where the event of a share happened, as 1 and 0; NaN is kept. If the check has no
-    event, the values are already boolean.
+    """Return for each value (n,) whether the event of a check happened, as 1 and 0; NaN is kept.
+    Without an event the values are returned as they are.
     """
     if check.limit is None:
         return values

@@ -61,7 +61,8 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """Return one row per place at the moment of a drive, which runs again.
+    """Run a drive again and return the points to draw for one moment: its surroundings then, the
+    way so far, the plan in force and dropped ones.
 
     Columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y,
     size, x_velocity, y_velocity (units per step). Parts are all of `workspace.data`, and start,

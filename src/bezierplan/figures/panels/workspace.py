@@ -163,7 +163,8 @@ def _list_shapes(workspace: Circles | Polygons) -> pd.DataFrame:
 
 
 def _build_table(bounds: Bounds, *drawn: pd.DataFrame) -> pd.DataFrame:
-    """Join the corners of the bounds and all that is drawn within them, with all columns.
+    """Join the corners of the bounds and the given tables, and keep the columns of a workspace
+    alone.
 
     Heights are a column only if there are any.
     """

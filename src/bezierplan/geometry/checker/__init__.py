@@ -70,7 +70,8 @@ class Check(NamedTuple):
 
 
 def check(pieces: np.ndarray, region: Region) -> Check:
-    """Check a path of Bézier pieces.
+    """Check whether a path of Bézier pieces enters a blocked region, and how deep, or how close it
+    comes.
 
     Parameters
     ----------

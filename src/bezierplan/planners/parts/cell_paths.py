@@ -53,7 +53,7 @@ def build_lattice(problem: Problem, corners: int) -> Lattice:
 def plan_of(
     problem: Problem, cells: np.ndarray, history: np.ndarray, evaluations: int, stop: str
 ) -> Plan:
-    """Build the plan with a path over the cells (n,) of a grid, or with none for no cells.
+    """Build the plan whose path leads through cells (n,) of a grid; without a path if n is 0.
 
     history: in cells.
     stop: why the search ended if it found a path.

@@ -37,8 +37,8 @@ def mutate(
     rules: NamedTuple,
     neighbours: np.ndarray,
 ) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3, and return how many it
-    evaluated.
+    """Apply the operator once to a path of cells (n,), n at least 3, in place; return how many
+    neighbour cells it compared.
 
     alleles: cells for random mutation.
     rules: `node_genetic.Settings`.

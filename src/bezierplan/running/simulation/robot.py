@@ -85,7 +85,7 @@ class _Log:
             self.times.append(times[k] + (lengths - begin) / pace)
 
     def drive(self, place: np.ndarray, until: float) -> None:
-        """Add a straight drive to a place (2,)."""
+        """Append a straight drive from the last point to a place (2,), reached `until` a step."""
         self.points.append(place[None])
         self.times.append(np.array([until]))
 

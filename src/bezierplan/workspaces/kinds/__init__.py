@@ -175,7 +175,7 @@ def kinds() -> dict[str, type[Workspace]]:
 
 
 def text(description: dict, key: str, folder: Path) -> str:
-    """Read the text of the file that a key of a description names.
+    """Read the text of the file whose name a description gives under a key.
 
     Raises ValueError with both names.
     """
