@@ -83,7 +83,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             _write(axes, 1.2 if wide else 1.4, middle, f"{off:.2g} %", "left")
             if wide:
                 why = describe_reasons(told["reason"]) if len(told) else "too wide to tell"
-                _write(axes, 1.34, middle, why, "left")
+                _write(axes, 1.38, middle, why, "left")
             if study != last:
                 _write(axes, -0.5 if wide else -0.84, middle, names[study], "left", weight="bold")
                 axes.axhline(
@@ -102,9 +102,9 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
         axes.spines[:].set_visible(False)
         axes.tick_params(length=0)
         _write(axes, 1.04, sum(heights) + 0.12, "inside", "left")
-        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "median\nmiss", "left")
+        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by\n(median)", "left")
         if wide:
-            _write(axes, 1.34, sum(heights) + 0.12, "why it proves nothing", "left")
+            _write(axes, 1.38, sum(heights) + 0.12, "why they prove nothing", "left")
         axes.legend(
             handles=[_build_dots([0], [0], *look)[0] for look in LOOKS.values()],
             labels=list(LOOKS),

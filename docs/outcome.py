@@ -17,6 +17,8 @@ import numbers_picture
 import pandas as pd
 
 from bezierplan.analysis import naming
+from bezierplan.analysis.claims import sentences
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
@@ -32,21 +34,24 @@ CHECKS, TEXTS = "claim_checks.csv", "texts.csv"
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
-PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and their median miss"></picture>"""  # noqa: E501
+PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far from ours they are"></picture>"""  # noqa: E501
 GENTLY = (
-    "Least often free (without a collision) first. Excess over the exact shortest path, and time: "
-    "medians over the problems. The rounded path turns no tighter than half of the method's free "
-    "paths without corners do. The method beats it in a problem if its median path is shorter, or "
-    "has wider turns than any rounded path can have. A dash: all paths have corners."
+    "Least often free (without a collision) first. Excess of the curve (not of counted cells) over "
+    "the exact shortest path, and time: medians over the problems. The rounded path turns no "
+    "tighter than half of the method's free paths without corners do. The method beats it in a "
+    "problem if its median path is shorter, or has wider turns than any rounded path can have. A "
+    "dash: all paths have corners."
 )
 ALONE = (
     "The row of the rounded shortest path, which is not compared with itself, has the turning "
     "radius that it takes if none is asked; where no arc fits, it keeps a corner."
 )
 TESTED = (
-    "Most claims are tested by several comparisons, such as one for each map. By default: as we "
-    "read the paper. In quotes: other ways to read it, or to count. No effect: the difference is "
-    "smaller than our criterion."
+    "Most claims are tested by several comparisons, such as one for each map. A claim is not about "
+    "one map alone, so maps of ours can test it, though not a printed length. By default: as we "
+    "read the paper. In quotes: other ways to read it, or to count ([what they "
+    "change](../../config/studies/{}/assumptions.yaml)). No effect: the difference is smaller than "
+    "our criterion."
 )
 OPEN = (
     "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
@@ -55,10 +60,11 @@ OPEN = (
 RANGE = "Our range holds 95 % of the results if our program repeats the paper's experiment."
 
 LAID = (
-    f"{comparison.SIGNS_MEAN}. A number without a sign repeats another one or follows from others, "
-    "so it does not count. Impossible: no runs give it, such as mean ranks that do not add up. "
-    "Times are of another machine: not compared. A number outside our range does not show that the "
-    "paper is wrong, because it does not print all that its numbers depend on."
+    f"{comparison.SIGNS_MEAN}. A number without a sign does not count: it repeats another one, "
+    "follows from others, or is a time, of another machine. Impossible: no runs give it, such as a "
+    "mean rank below 1, or mean ranks of m methods whose mean is not (m + 1) / 2. A number outside "
+    "our range does not show that the paper is wrong, because it does not print all that its "
+    "numbers depend on."
 )
 MARKS = ("\\*", "†", "‡", "§")
 """Beside printed numbers that prove nothing about the paper, one for each reason."""
@@ -70,7 +76,10 @@ IDENTIFIED = (
     "the printed number, the closest such length, its cells or moves, and the chance that a number "
     "drawn nearby would match as well. A row for several numbers says how many of them match."
 )
-LISTED = "Some of its lengths can be [calculated without any run](identified.md)."
+LISTED = (
+    "Some of its lengths are those of [paths that can be listed](identified.md). That tells what "
+    "the paper measured, not whether its method finds such paths."
+)
 MORE = (
     "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
     "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
@@ -114,7 +123,14 @@ def main() -> None:
         own_problems = own_problems[~own_problems["method"].isin(studies[key].variants())]
         measured = build_methods_table(own_problems, {key: labels[key]})
         page = build_paper_page(
-            titles[key], answer, own_claims, measured, own_numbers, RESULTS / key, tables[key]
+            titles[key],
+            answer,
+            own_claims,
+            studies[key].claims,
+            measured,
+            own_numbers,
+            RESULTS / key,
+            tables[key],
         )
         (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
     (KEPT / "identified.md").write_text(build_identified_page(KEPT, studies), encoding="utf-8")
@@ -157,6 +173,7 @@ def build_paper_page(
     title: str,
     answer: facts.FilledText,
     claims: pd.DataFrame,
+    declared: Iterable[Claim],
     measured: str,
     numbers: pd.DataFrame,
     folder: Path,
@@ -165,21 +182,24 @@ def build_paper_page(
     """Return the page of a paper, as markdown: the answer, its main claims, its method beside the
     rounded shortest path, and its tables with the printed number beside ours in each cell.
 
-    claims, numbers: of this paper. measured: the table of methods. folder: the study's results.
-    tables: name -> title, which columns name the rows, and whether some lengths can be listed; for
-    tables with printed numbers.
+    claims, numbers: of this paper. declared: its claims in claims.yaml. measured: the table of
+    methods. folder: the study's results. tables: name -> title, which columns name the rows, and
+    whether some lengths can be listed; for tables with printed numbers.
     """
     heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
     heads |= {"where_it_holds": "where it holds, by which criterion of ours, or why that is open"}
     main = claims[claims["primary"] & claims["main"].astype(bool)]
-    main = main.assign(where_it_holds=[*map(describe_where_or_why, main.to_dict("records"))])
+    by_id = {claim.id: claim for claim in declared}
+    main["where_it_holds"] = [
+        describe_where_or_why(row, by_id[row["id"]]) for row in main.to_dict("records")
+    ]
     main = main[[*heads]]
     parts = [
         f"# {title}",
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         write_table(main.rename(columns=heads).set_index("claim")),
-        TESTED,
+        TESTED.format(folder.name),
         "## Its methods beside the exact shortest path with rounded corners",
         measured,
         "## Its tables",
@@ -220,12 +240,14 @@ def mark_worthless(numbers: pd.DataFrame) -> tuple[list[str], list[str]]:
     return [" ".join(told)] if told else [], [*numbers["reason"].map(reasons).fillna("")]
 
 
-def describe_where_or_why(claim: Mapping[str, Any]) -> str:
+def describe_where_or_why(claim: Mapping[str, Any], declared: Claim | None) -> str:
     """Describe where a claim holds, and by which criterion of ours; or why that is open, by the
     first part of the reason.
 
+    declared: the claim in claims.yaml.
+
     >>> told = {"verdict": "depends", "reason": "partly (O1: 2). It is so."}
-    >>> describe_where_or_why(told | {"where_it_holds": ""})
+    >>> describe_where_or_why(told | {"where_it_holds": ""}, None)
     'partly'
     """
     reason = claim["reason"] if isinstance(claim["reason"], str) else ""
@@ -233,14 +255,13 @@ def describe_where_or_why(claim: Mapping[str, Any]) -> str:
         # What a reading changes stands in brackets: the list of claims has it.
         without = re.sub(r" \((?:[^()]|\([^()]*\))*\)", "", reason)
         return re.split(r"; |\.(?: (?=[A-Z])|$)", without)[0]
-    places = claim["where_it_holds"]
-    if not isinstance(places, str):
-        words = {"supported": "everywhere: ", "contradicted": "nowhere: ", "no effect": "nowhere: "}
-        places = f"{words.get(claim['verdict'], '')}{claim['holds']} comparisons"
-    else:
-        places = f"{claim['holds']} comparisons. {places}"
+    count = sentences.describe_count(declared, claim["verdict"], claim["holds"])
+    held, _, needs = count.partition("; ")
+    told = f"{held} comparisons ({needs})" if needs else f"{held} comparisons"
+    if isinstance(claim["where_it_holds"], str):
+        told = f"{told}. {claim['where_it_holds']}"
     ours = re.search(r"Ours: (.*?)\.(?: |$)", reason)
-    return f"{places}; our criterion: {ours[1]}" if ours else places
+    return f"{told}; our criterion: {ours[1]}" if ours else told
 
 
 def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
@@ -348,20 +369,23 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     # Where every straight line is free, nobody can be shorter.
     straight = of_problems.groupby(["study", "family"])["straight"].all()
     blocked = [not straight[place] for place in zip(rows["study"], rows["family"])]
+    beside = rows[rows["method"] == "rounded"].merge(rows[own], on=["study", "family"])
+    faster = beside.loc[beside["cpu_ms_x"] > beside["cpu_ms_y"], "study"]
     rows = rows[own & (rows["both"] > 0) & pd.Series(blocked, rows.index)]
     others = rows[rows["adds"] > 0]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and takes {times[0]} (the papers' methods: {times[1]}). "
+        f"and takes {times[0]} (the papers' methods: {times[1]}, less in {len(faster)} "
+        f"of {naming.format_count(len(beside), 'kind')} of scenarios, those of "
+        f"{' and '.join(map(format_name, faster.unique()))}). "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
-        "with smooth paths and a blocked straight line, the paper's method is ahead in no problem: "
-        "neither is its path shorter than a rounded one as smooth, nor are its turns wider"
+        "with smooth paths and a blocked straight line, the paper's method beats it in no problem"
     )
     better = " and ".join(
         f"{each.adds:.0f} of {each.both:.0f} problems ({format_name(each.study)}, {each.family})"
         for each in others.itertuples()
     )
-    return f"{told}. It is ahead in {better}." if better else f"{told}."
+    return f"{told}. One does in {better}." if better else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:

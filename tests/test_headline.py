@@ -44,10 +44,10 @@ def test_numbers_and_claims_are_said_in_two_sentences():
             ("two", "inside", 10.0, 10.0, {"counted": False}),
         )
     ) == (
-        "Of 3 printed numbers our range is narrow enough to test 2: 1 lie inside it, 1 outside. "
-        "For the other 1 it is so wide that it holds at least half of the paper's other numbers of "
-        "the same kind. Wherever they lie, 1 of the 2 prove nothing about the paper "
-        "(no exact map is printed: 1). Only 1 could confirm a paper, and 0 do."
+        "Of 3 printed numbers our range is too wide to tell for 1: it also holds at least half of "
+        "the paper's other numbers of the same kind. Of the other 2, 1 lie inside our range, "
+        "1 outside. Inside or outside, 1 of these prove nothing about the paper (no exact map is "
+        "printed: 1). Only 1 could confirm one, and 0 do."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

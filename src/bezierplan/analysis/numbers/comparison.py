@@ -44,8 +44,8 @@ SIGNS = {"below": "▼", "inside": "●", "above": "▲"}
 """Position -> its sign in print, which stands in brackets if the range is too wide to tell."""
 SIGNS_MEAN = (
     "First the printed number, then the range of ours (95 % of experiments of the paper's size): "
-    "● inside, ▲ printed number above it, ▼ below it; a sign in brackets tells little, because our "
-    "range also holds at least half of the paper's other numbers of the same kind"
+    "● inside, ▲ printed number above it, ▼ below it; in brackets where our range is too wide to "
+    "tell, because it also holds at least half of the paper's other numbers of the same kind"
 )
 
 FITTED = "we fitted a detail to it"

@@ -10,7 +10,7 @@ from bezierplan.analysis import legend, naming
 
 
 def describe_numbers(numbers: pd.DataFrame) -> str:
-    """Say for how many printed numbers our range is narrow enough to tell, and how many of these
+    """Say for how many printed numbers our range is too wide to tell, and how many of the others
     lie inside it; empty without numbers that count.
 
     numbers: as from `summary.list_numbers`.
@@ -20,23 +20,21 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         return ""
     told = numbers[~numbers["wide"].astype(bool)]
     inside = int((told["position"] == "inside").sum())
-    text = (
-        f"Of {naming.format_count(len(numbers), 'printed number')} our range is narrow enough "
-        f"to test {len(told)}: {inside} lie inside it, {len(told) - inside} outside."
-    )
+    text = f"Of {naming.format_count(len(numbers), 'printed number')} "
     if vague := len(numbers) - len(told):
         text += (
-            f" For the other {vague} it is so wide that it holds at least half of the paper's "
-            "other numbers of the same kind."
+            f"our range is too wide to tell for {vague}: it also holds at least half of the "
+            f"paper's other numbers of the same kind. Of the other {len(told)}, "
         )
+    text += f"{inside} lie inside our range, {len(told) - inside} outside."
     reasons = told["reason"].fillna("")
     worth = told[reasons == ""]
     if len(worth) < len(told):
         counts = reasons[reasons != ""].value_counts()
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
-            f" Wherever they lie, {len(told) - len(worth)} of the {len(told)} prove nothing about "
-            f"the paper ({why}). Only {len(worth)} could confirm a paper, and "
+            f" Inside or outside, {len(told) - len(worth)} of these prove nothing about the paper "
+            f"({why}). Only {len(worth)} could confirm one, and "
             f"{(worth['position'] == 'inside').sum()} do."
         )
     return text
