@@ -38,9 +38,9 @@ PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/nu
 GENTLY = (
     "Least often free (without a collision) first. Excess of the curve (not of counted cells) over "
     "the exact shortest path, and time: medians over the problems. The rounded path turns no "
-    "tighter than half of the method's free paths without corners do. The method beats it in a "
-    "problem if its median path is shorter, or has wider turns than any rounded path can have. A "
-    "dash: all paths have corners."
+    "tighter than the method's median free path without corners. The method beats it in a problem "
+    "if its median path is shorter, or has wider turns than any rounded path can have. A dash: all "
+    "paths have corners."
 )
 ALONE = (
     "The row of the rounded shortest path, which is not compared with itself, has the turning "
@@ -385,7 +385,7 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
         f"{each.adds:.0f} of {each.both:.0f} problems ({format_name(each.study)}, {each.family})"
         for each in others.itertuples()
     )
-    return f"{told}. One does in {better}." if better else f"{told}."
+    return f"{told}. The exceptions: {better}." if better else f"{told}."
 
 
 def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:

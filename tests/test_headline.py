@@ -54,8 +54,8 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         two=["contradicted", "contradicted", "untestable"],
     )
     assert headline.describe_claims(judged) == (
-        "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 are open (undecided, untestable, or "
-        "dependent on unprinted details)."
+        "Of 6 claims 1 hold, 1 hold in part, 3 fail, and 1 are open: 0 undecided, 1 untestable, "
+        "0 dependent on unprinted details."
     )
 
 

@@ -48,9 +48,11 @@ def describe_claims(claims: pd.DataFrame) -> str:
     claims = claims[claims["primary"].astype(bool) & ~claims["finding"].astype(bool)]
     if claims.empty:
         return ""
+    each = Counter(claims["verdict"])
     counts = Counter(legend.WORDS[verdict].group for verdict in claims["verdict"])
     return (
         f"Of {naming.format_count(len(claims), 'claim')} {counts['hold']} hold, {counts['partly']} "
-        f"hold in part, {counts['fail']} fail, and {counts['open']} are open (undecided, "
-        "untestable, or dependent on unprinted details)."
+        f"hold in part, {counts['fail']} fail, and {counts['open']} are open: {each['undecided']} "
+        f"undecided, {each['untestable']} untestable, {each['depends']} dependent on unprinted "
+        "details."
     )
