@@ -375,7 +375,7 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     others = rows[rows["adds"] > 0]
     told = (
         "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and takes {times[0]} (the papers' methods: {times[1]}, less in {len(faster)} "
+        f"and takes {times[0]} (the papers' methods: {times[1]}, faster than it in {len(faster)} "
         f"of {naming.format_count(len(beside), 'kind')} of scenarios, those of "
         f"{' and '.join(map(format_name, faster.unique()))}). "
         f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "

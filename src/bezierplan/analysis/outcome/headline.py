@@ -34,7 +34,7 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
         why = ", ".join(f"{reason}: {count}" for reason, count in counts.items())
         text += (
             f" Inside or outside, {len(told) - len(worth)} of these prove nothing about the paper "
-            f"({why}). Only {len(worth)} could confirm one, and "
+            f"({why}). Only {len(worth)} could confirm a paper, and "
             f"{(worth['position'] == 'inside').sum()} do."
         )
     return text
