@@ -154,20 +154,28 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     cuts = np.unique(
         np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
     )
-    for begin, end in itertools.pairwise(cuts):
-        points, times = cut_motion(motion, begin, end)
-        check = checker.check(
-            np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)]
-        )
-        step = math.floor(begin) - first
+    points, times = _add_vertices(motion, cuts)
+    legs = np.stack([points[:-1], points[1:]], axis=1)
+    for begin, end in itertools.pairwise(np.searchsorted(times, cuts)):
+        check = checker.check(legs[begin:end], regions[world.index(times[begin])])
+        step = math.floor(times[begin]) - first
         clearance[step] = min(clearance[step], check.clearance)
         depth, tolerance = max(depth, check.depth), max(tolerance, check.tolerance)
         if not check.feasible and math.isnan(collision_at):
-            leg = min(int(check.collision_at), len(points) - 2)
-            collision_at = float(
-                times[leg] + (check.collision_at - leg) * (times[leg + 1] - times[leg])
-            )
+            leg = min(int(check.collision_at), end - begin - 1)
+            one, other = times[begin + leg : begin + leg + 2]
+            collision_at = float(one + (check.collision_at - leg) * (other - one))
     return Verdict(collision_at, clearance, depth, tolerance)
+
+
+def _add_vertices(motion: Motion, cuts: np.ndarray) -> Motion:
+    """Return the same motion with a vertex at each of some ascending times, which begin and end
+    with its own.
+    """
+    others = ~np.isin(motion.times, cuts)
+    times = np.concatenate([cuts, motion.times[others]])
+    order = np.argsort(times, kind="stable")
+    return Motion(np.concatenate([motion.at(cuts), motion.points[others]])[order], times[order])
 
 
 def cut_motion(motion: Motion, begin: float, end: float) -> Motion:
