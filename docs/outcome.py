@@ -36,7 +36,7 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far from ours they are"></picture>"""  # noqa: E501
 GENTLY = (
-    "Least often free (without a collision) first. Excess of the curve (not of counted cells) over "
+    "Least often free (without a collision) first. Excess of free curves (not counted cells) over "
     "the exact shortest path, and time: medians over the problems. The rounded path turns no "
     "tighter than the method's median free path without corners. The method beats it in a problem "
     "if its median path is shorter, or has wider turns than any rounded path can have. A dash: all "

@@ -45,9 +45,9 @@ def test_numbers_and_claims_are_said_in_two_sentences():
         )
     ) == (
         "Of 3 printed numbers our range is too wide to tell for 1: it also holds at least half of "
-        "the paper's other numbers of the same kind. Of the other 2, 1 lie inside our range, "
-        "1 outside. Inside or outside, 1 of these prove nothing about the paper (no exact map is "
-        "printed: 1). Only 1 could confirm a paper, and 0 do."
+        "the paper's other numbers of that quantity and condition. Of the other 2, 1 lie inside "
+        "our range, 1 outside. Inside or outside, 1 of these prove nothing about the paper (no "
+        "exact map is printed: 1). Only 1 could confirm a paper, and 0 do."
     )
     judged = claims(
         one=["supported", "partly", "no effect"],

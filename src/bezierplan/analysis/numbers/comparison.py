@@ -45,7 +45,8 @@ SIGNS = {"below": "▼", "inside": "●", "above": "▲"}
 SIGNS_MEAN = (
     "First the printed number, then the range of ours (95 % of experiments of the paper's size): "
     "● inside, ▲ printed number above it, ▼ below it; in brackets where our range is too wide to "
-    "tell, because it also holds at least half of the paper's other numbers of the same kind"
+    "tell, because it also holds at least half of the paper's other numbers of the same quantity "
+    "and condition"
 )
 
 FITTED = "we fitted a detail to it"

@@ -24,7 +24,7 @@ def describe_numbers(numbers: pd.DataFrame) -> str:
     if vague := len(numbers) - len(told):
         text += (
             f"our range is too wide to tell for {vague}: it also holds at least half of the "
-            f"paper's other numbers of the same kind. Of the other {len(told)}, "
+            f"paper's other numbers of that quantity and condition. Of the other {len(told)}, "
         )
     text += f"{inside} lie inside our range, {len(told) - inside} outside."
     reasons = told["reason"].fillna("")
