@@ -194,7 +194,7 @@ def tab(request, browser, address):  # noqa: F811
 
 # A question, what a reader clicks on from the site's home, and what is then in sight.
 CLICKS = [
-    ("overall answer", [], "narrow enough to test"),
+    ("overall answer", [], "lie inside our range"),
     ("is a paper right", [], "seldom the shortest"),
     ("how long does it take", ["Which method should I use?"], "takes some milliseconds"),
     ("two methods on one map", ["Which method should I use?"], "A method plans on any map that"),
