@@ -102,7 +102,7 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
         axes.spines[:].set_visible(False)
         axes.tick_params(length=0)
         _write(axes, 1.04, sum(heights) + 0.12, "inside", "left")
-        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by\n(median)", "left")
+        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by,\nmedian", "left")
         if wide:
             _write(axes, 1.38, sum(heights) + 0.12, "why they prove nothing", "left")
         axes.legend(
