@@ -7,6 +7,7 @@ after which a robot has failed.
 
 import json
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -163,6 +164,8 @@ def from_json(text: str) -> World:
     )
 
 
+# Worlds with equal maps share the object, so `build_region` prepares it once.
+@cache
 def _read_grid(text: str) -> Grid:
     """Read the map that `files.write_json` wrote."""
     workspace = files.read_json(text)
