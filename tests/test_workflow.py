@@ -335,8 +335,8 @@ def written(tree):
     }
 
 
-# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `jobs.log`); macOS has no
-# such call, and no /proc to look into.
+# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `jobs.watchdog`); macOS has
+# no such call, and no /proc to look into.
 @pytest.mark.skipif(
     sys.platform != "linux",
     reason="only the kernel of Linux ends a job with its parent, and has /proc to look into",
