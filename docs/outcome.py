@@ -35,18 +35,18 @@ OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
 PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far from ours they are"></picture>"""  # noqa: E501
-GENTLY = (
+METHODS_NOTE = (
     "Least often free (without a collision) first. Excess of free curves (not counted cells) over "
     "the exact shortest path, and time: medians over the problems. The rounded path turns no "
     "tighter than the method's median free path without corners. The method beats it in a problem "
     "if its median path is shorter, or has wider turns than any rounded path can have. A dash: all "
     "paths have corners."
 )
-ALONE = (
+ROUNDED_NOTE = (
     "The row of the rounded shortest path, which is not compared with itself, has the turning "
     "radius that it takes if none is asked; where no arc fits, it keeps a corner."
 )
-TESTED = (
+CLAIMS_NOTE = (
     "Most claims are tested by several comparisons, such as one for each map. A claim is not about "
     "one map alone, so maps of ours can test it, though not a printed length. By default: as we "
     "read the paper. In quotes: other ways to read it, or to count ([what they "
@@ -59,7 +59,7 @@ OPEN = (
 )
 RANGE = "Our range holds 95 % of the results if our program repeats the paper's experiment."
 
-LAID = (
+TABLES_NOTE = (
     f"{comparison.SIGNS_MEAN}. A number without a sign does not count: it repeats another one, "
     "follows from others, or is a time, of another machine. Impossible: no runs give it, such as a "
     "mean rank below 1, or mean ranks of m methods whose mean is not (m + 1) / 2. A number outside "
@@ -76,7 +76,7 @@ IDENTIFIED = (
     "the printed number, the closest such length, its cells or moves, and the chance that a number "
     "drawn nearby would match as well. A row for several numbers says how many of them match."
 )
-LISTED = (
+LISTED_NOTE = (
     "Some of its lengths are those of [paths that can be listed](identified.md). That tells what "
     "the paper measured, not whether its method finds such paths."
 )
@@ -199,12 +199,12 @@ def build_paper_page(
         f"**{answer.title}.** {answer.text}",
         "## What abstract and conclusion claim",
         write_table(main.rename(columns=heads).set_index("claim")),
-        TESTED.format(folder.name),
+        CLAIMS_NOTE.format(folder.name),
         "## Its methods beside the exact shortest path with rounded corners",
         measured,
         "## Its tables",
         MORE.format(folder.name),
-        LAID,
+        TABLES_NOTE,
     ]
     for name, (table_title, index, is_listed) in tables.items():
         ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
@@ -217,7 +217,7 @@ def build_paper_page(
         parts += [
             f"### {naming.format_heading(name)}: {table_title}",
             *told,
-            *([LISTED] if is_listed else []),
+            *([LISTED_NOTE] if is_listed else []),
             write_table(_place_beside(ours, laid, index)),
         ]
     return "\n\n".join(parts) + "\n"
@@ -369,8 +369,9 @@ def describe_methods(of_problems: pd.DataFrame) -> str:
     # Where every straight line is free, nobody can be shorter.
     straight = of_problems.groupby(["study", "family"])["straight"].all()
     blocked = [not straight[place] for place in zip(rows["study"], rows["family"])]
-    beside = rows[rows["method"] == "rounded"].merge(rows[own], on=["study", "family"])
-    faster = beside.loc[beside["cpu_ms_x"] > beside["cpu_ms_y"], "study"]
+    rounded = rows.loc[rows["method"] == "rounded", ["study", "family", "cpu_ms"]]
+    beside = rows[own].merge(rounded, on=["study", "family"], suffixes=("", "_rounded"))
+    faster = beside.loc[beside["cpu_ms"] < beside["cpu_ms_rounded"], "study"]
     rows = rows[own & (rows["both"] > 0) & pd.Series(blocked, rows.index)]
     others = rows[rows["adds"] > 0]
     told = (
@@ -401,8 +402,8 @@ def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.L
     }
     groups = rows.groupby(["study", "family"], sort=False)
     laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
-    own = f" {ALONE}" if "rounded" in set(rows["method"]) else ""
-    return f"{write_table(laid)}\n\n*{GENTLY}{own}*"
+    own = f" {ROUNDED_NOTE}" if "rounded" in set(rows["method"]) else ""
+    return f"{write_table(laid)}\n\n*{METHODS_NOTE}{own}*"
 
 
 def format_name(key: str) -> str:

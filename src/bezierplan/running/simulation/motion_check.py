@@ -169,8 +169,8 @@ def _check_among_cells(motion: Motion, world: ChangingCells) -> Verdict:
 
 
 def _add_vertices(motion: Motion, cuts: np.ndarray) -> Motion:
-    """Return the same motion with a vertex at each of some ascending times, which begin and end
-    with its own.
+    """Return the same motion with a vertex at each cut. cuts: (k,) ascending times, in steps, the
+    first and the last those of the motion.
     """
     others = ~np.isin(motion.times, cuts)
     times = np.concatenate([cuts, motion.times[others]])
