@@ -308,10 +308,7 @@ def test_audit_of_tharwat2018():
     # With two obstacles and with five, the printed best value is better than with one less.
     shorter = wrong[wrong["rule"].str.startswith("objective goes up along obstacles")]
     assert shorter["arithmetic"].to_list() == ["8.04 <= 7.71", "8.45 <= 8.29"]
-    # Friedman's test on the ranks of both tables of chaotic maps.
-    alike = wrong[wrong["rule"].str.startswith("the mean ranks tell rows apart")]
-    assert alike["item"].to_list() == ["table3", "table4"]
-    assert len(wrong) == 2 + 2 + 5 + 1 + 2 + 2
+    assert len(wrong) == 2 + 2 + 5 + 1 + 2
     (repeated,) = rows[rows["rule"].str.startswith("Table 5 has")]["printed"]
     assert repeated == 8
 

@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import identified, possible
@@ -30,9 +29,6 @@ _SPREADS = ("std", "iqr", "range")
 
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
-
-LEVEL = 0.05
-"""The level of Friedman's test."""
 
 
 def check_lengths(
@@ -161,8 +157,8 @@ def _check_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> I
 
 
 def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dict]:
-    """Yield rows on mean ranks of k rows: that they lie between 1 and k, that they add to
-    k (k + 1) / 2, and whether Friedman's test tells the rows apart.
+    """Yield rows on mean ranks of k rows: that they lie between 1 and k, and that they
+    add to k (k + 1) / 2.
 
     columns: the key columns within whose values rows are ranked; columns that the file lacks do not
     matter.
@@ -187,45 +183,6 @@ def check_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[
             arithmetic = f"1 <= {row['as_printed']} <= {count}"
             of_row = describe_cell(row, [*keys, "metric"])
             yield build_audit_row(item, of_row, rule, row["value"], limit, fits, arithmetic)
-        sizes = group["n"].unique()
-        # The test needs true mean ranks, all of the same number of runs.
-        if adds and len(sizes) == 1 and sizes[0] > 1:
-            n = int(sizes[0])
-            apart, critical, chi_square, p, least = compute_friedman(group["value"].to_numpy(), n)
-            rule = (
-                f"the mean ranks tell rows apart: Friedman's test from the ranks, if of {n} runs, "
-                "at 5 %"
-            )
-            arithmetic = (
-                f"chi-square {chi_square:.3g} with {count - 1} degrees of freedom, p = {p:.2g}; "
-                f"the largest difference is {apart:.2g}, the critical one {critical:.3g}; "
-                f"p is below {LEVEL:g} from {least} runs on"
-            )
-            yield build_audit_row(
-                item, location, rule, apart, critical, bool(p < LEVEL), arithmetic
-            )
-
-
-def compute_friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float, int]:
-    """Compute Friedman's test, without ties, from mean ranks (k,) over n units.
-
-    Returns the largest difference of ranks, the critical one of Nemenyi, chi-square, p, and the
-    least number of units with which the same ranks would differ.
-
-    Source: Demšar (2006), "Statistical comparisons of classifiers over multiple data sets", Journal
-    of Machine Learning Research 7, 1.
-    """
-    from scipy import stats
-
-    k = len(ranks)
-    chi_square = 12 * n / (k * (k + 1)) * float(((ranks - (k + 1) / 2) ** 2).sum())
-    # Nemenyi's quantile is that of the studentized range, divided by the root of two.
-    quantile = float(stats.studentized_range.ppf(1 - LEVEL, k, np.inf)) / math.sqrt(2)
-    critical = quantile * math.sqrt(k * (k + 1) / (6 * n))
-    p = float(stats.chi2.sf(chi_square, k - 1))
-    # With the same mean ranks, chi-square grows in proportion to the number of units.
-    least = math.ceil(n * stats.chi2.isf(LEVEL, k - 1) / chi_square) if chi_square else math.inf
-    return float(np.ptp(ranks)), critical, chi_square, p, least
 
 
 def check_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:

@@ -119,8 +119,6 @@ class Finding(NamedTuple):
     """
 
     effect: float = math.nan
-    effect_size_name: str = ""
-    effect_size: float = math.nan
     low95: float = math.nan
     high95: float = math.nan
     n: int = 0
@@ -284,7 +282,7 @@ def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Find
     if reason := explain_too_few(comparison):
         return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
     margin = compute_margin(check, comparison)
-    finding = Finding(ours, "difference", ours, n=n, margin=margin)
+    finding = Finding(ours, n=n, margin=margin)
     if check.point_statistic in WITHOUT_INTERVAL:
         return _judge_by_draws(check, comparison, name, finding), np.empty(0)
     draws = draw_effects(check, comparison, name)

@@ -148,7 +148,10 @@ def describe_where(rows: Sequence[Row], checks: Sequence[ClaimCheck], labels: La
     parts = []
     for row in rows:
         group, other, place = name_terms(row, checks[row["check"] - 1], labels)
-        statistic = "" if row["statistic"] == "rank" else row["statistic"]
+        # What a function computes takes many words.
+        statistic = (
+            "" if row["test"] == "function" or row["statistic"] == "rank" else row["statistic"]
+        )
         measured = " ".join(filter(None, [statistic, row["metric"] or row["test"]]))
         parts.append((group, other and f"against {other}", place, measured.replace("_", " ")))
     # What all comparisons share is left out, as in `MGA against GA, Case 1`.

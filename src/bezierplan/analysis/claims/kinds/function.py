@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 class Options(check.ClaimCheck):
     name: Function = Field(description="the name of a function of the study's `functions.py`")
     arguments: Arguments = Field({}, description=ARGUMENTS)
-    effect: Line = Field(description="what its effect measures, in words")
+    statistic: Line = Field(description="what it computes, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
     experiment: check.Experiments = None
     metric: Metric = Field(None, description="the name of a metric")
@@ -57,5 +57,5 @@ class Options(check.ClaimCheck):
             self, material.results, material.published, **self.arguments
         )
         low, high = interval or (math.nan, math.nan)
-        finding = Finding(effect, self.effect, effect, low, high, n, mark=mark)
+        finding = Finding(effect, low, high, n, mark=mark)
         return [(Terms(self.name), finding)]

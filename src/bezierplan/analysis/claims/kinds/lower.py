@@ -1,13 +1,13 @@
 """Test whether groups are lower, or higher, than others: each of some than each of others, or every
 one of a tier than every one of the next.
 
-| statistic | test | effect size |
-| --- | --- | --- |
-| `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney | A12 as claimed |
-| `rank` of booleans | McNemar's exact test (paired), Fisher's exact test | odds ratio |
-| `mean` | Student's t of the differences (paired), Welch's t | A12 |
-| any other, or several conditions | bootstrap | A12; for spreads the difference |
-| `min`, `max`, `range` | how often the sentence holds in draws of as many runs | the difference |
+| statistic | test |
+| --- | --- |
+| `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney |
+| `rank` of booleans | McNemar's exact test (paired), Fisher's exact test |
+| `mean` | Student's t of the differences (paired), Welch's t |
+| any other, or several conditions | bootstrap |
+| `min`, `max`, `range` | how often the sentence holds in draws of as many runs |
 
 Minima, maxima and ranges depend on the number of runs: their draws have as many as the paper.
 
@@ -39,7 +39,7 @@ from bezierplan.analysis.claims.check import (
     refuse_same_group,
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
-from bezierplan.analysis.claims.ranks import compare_ranks, compute_a12
+from bezierplan.analysis.claims.ranks import compare_ranks
 from bezierplan.schema.model import Flag, Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
@@ -140,14 +140,11 @@ class Options(Comparing):
         # An effect relative to zero has no p. Where failures rank last, ranks need no mean.
         if not (math.isfinite(ours) or infinite):
             p = math.nan
-        size_name, size = _compute_effect_size(self, comparison, ours)
         reason = effects.explain_missing(p) or (
             "" if toward else effects.explain_no_difference(low, high, n)
         )
         negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
         finding = finding._replace(
-            effect_size_name=size_name,
-            effect_size=size,
             p=p,
             # Without an effect this is nan, which `int` refuses.
             toward=int(np.nan_to_num(toward)),
@@ -214,33 +211,5 @@ def _compute_p_of_booleans(group: np.ndarray, reference: np.ndarray, paired: boo
     if paired:
         more, fewer = int(np.sum(group > reference)), int(np.sum(group < reference))
         return float(stats.binomtest(more, more + fewer).pvalue) if more + fewer else 1.0
-    return float(stats.fisher_exact(_count_contingency(group, reference)).pvalue)
-
-
-def _count_contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
-    """Count true and false values of each group, the rows of a contingency table."""
-    return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
-
-
-def _compute_effect_size(check: OfRuns, comparison: Contrast, ours: float) -> tuple[str, float]:
-    """Compute the effect size and name it: odds ratio of booleans; A12, the share of pairs won in
-    the claimed direction; or the difference itself.
-    """
-    pairs = comparison.list_values()
-    if comparison.boolean and len(pairs) == 1:
-        ((group, other),) = pairs
-        if comparison.paired:
-            more, fewer = np.sum(group > other), np.sum(group < other)
-        else:
-            (a, b), (c, d) = _count_contingency(group, other)
-            more, fewer = a * d, b * c
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return "odds ratio", float(np.divide(more, fewer))
-    # Pairs of values say nothing about a spread or an extreme.
-    if check.point_statistic not in ("mean", "median"):
-        return "difference", ours
-    if comparison.paired:
-        won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]
-    else:
-        won = [compute_a12(group, other) for group, other in pairs]
-    return "A12", float(np.mean(won)) if check.side > 0 else 1 - float(np.mean(won))
+    counts = [[values.sum(), len(values) - values.sum()] for values in (group, reference)]
+    return float(stats.fisher_exact(np.array(counts, dtype=int)).pvalue)

@@ -116,7 +116,7 @@ class Options(OfRuns):
                 f"{name}: {self.metric} has values other than true and false; its check needs an "
                 "event"
             )
-        finding = Finding(k / n, "share", k / n, n=n)
+        finding = Finding(k / n, n=n)
         # The sentence is about these runs alone, so it holds or does not: nothing is tested.
         if self.pick:
             return finding._replace(
@@ -172,7 +172,7 @@ def _test_over_conditions(
     shares = np.array([np.nanmean(stratum) for stratum in known])
     mean = float(shares.mean())
     toward = int(np.sign(side * (mean - threshold)))
-    finding = finding._replace(effect=mean, effect_size=mean, n=len(shares), toward=toward)
+    finding = finding._replace(effect=mean, n=len(shares), toward=toward)
     # Student's t is undefined without spread.
     if not np.ptp(shares):
         return finding._replace(low95=mean, high95=mean, p=0.0 if toward else 1.0)

@@ -72,7 +72,6 @@ class Options(WithMargin):
         comparison = comparison._replace(paired=False)
         ours = effects.compute_points(comparison, statistic)
         if statistic == "mean":
-            slope = float(slopes.mean())
             reference = ours[0] if self.relative else 1.0
             changes = slopes * np.ptp(x) / (reference or math.nan)
             change = float(changes.mean())
@@ -82,7 +81,6 @@ class Options(WithMargin):
                 draws = statistics.resample("mean", changes, n, generator(name))
             p = compute_p_of_signed_ranks(slopes)
         else:
-            slope = float(_compute_weights(x) @ ours / np.ptp(x))
             change = float(self.compute_effect(ours, comparison.cells))
             draws = effects.draw_effects(self, comparison, name)
             p = effects.compute_p(draws)
@@ -91,7 +89,7 @@ class Options(WithMargin):
         toward = int(np.sign(self.side * np.nan_to_num(change)))
         toward = 0 if abs(change) < margin else toward
         negligible = effects.is_negligible(low, high, margin, n)
-        finding = Finding(change, "slope", slope, low, high, n, p, toward, margin, negligible)
+        finding = Finding(change, low, high, n, p, toward, margin, negligible)
         reason = effects.explain_missing(change) or effects.explain_no_difference(low, high, n)
         return finding._replace(reason=reason)
 
