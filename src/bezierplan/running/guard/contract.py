@@ -8,7 +8,7 @@ count, not its actual work.
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
-from itertools import cycle
+from itertools import chain, cycle
 from types import ModuleType
 from typing import NamedTuple
 
@@ -133,14 +133,15 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
     exact, names = getattr(module, "exact", False), {*TAKEN, *settings}
     plans_of: dict[str, list[Plan]] = {}
     draws, paths, free = False, 0, 0
-    for name, problem in by_name.items():
-        # A problem at a time, so that a slow planner's findings appear early.
-        try:
-            (made,) = run_planner(planner, settings, {name: problem}, SEEDS).values()
-        except PlannerFailure as failure:
-            yield ContractFinding(name, "plan", False, str(failure).splitlines()[0])
+    first, *others = by_name
+    # The first problem alone, so that a slow planner's first findings appear early.
+    tried = (_run_on_each(planner, settings, few, by_name) for few in ([first], others))
+    for name, made in chain.from_iterable(tried):
+        if isinstance(made, PlannerFailure):
+            yield ContractFinding(name, "plan", False, str(made).splitlines()[0])
             continue
-        plans = plans_of[name] = [each.result for each in made]
+        problem, plans = by_name[name], [each.result for each in made]
+        plans_of[name] = plans
         draws |= any(each.drew for each in made)
         first = next(iter(plans_of.values()))[0]
         feasible = _find_free(plans, problem)
@@ -179,6 +180,23 @@ def _find_faults(planner: str, module: ModuleType, settings: Settings) -> Iterat
     else:
         said, passed = "" if differ else worker.ALIKE[draws], draws or differ
     yield ContractFinding("all problems", "random numbers", passed, said)
+
+
+def _run_on_each(
+    planner: str, settings: Settings, names: Sequence[str], by_name: dict[str, Problem]
+) -> Iterator[tuple[str, list[worker.Reply] | PlannerFailure]]:
+    """Yield the replies of a planner on each of the named problems, or its failure there: from one
+    process, which takes a second to start, or one a problem if any fails.
+    """
+    try:
+        few = {name: by_name[name] for name in names}
+        yield from run_planner(planner, settings, few, SEEDS).items()
+    except PlannerFailure as failure:
+        if len(names) == 1:
+            yield names[0], failure
+            return
+        for name in names:
+            yield from _run_on_each(planner, settings, [name], by_name)
 
 
 def run_planner(
