@@ -255,7 +255,7 @@ def test_a_robot_follows_its_way_until_there_is_something_to_decide(
     world = circles(DATA["circles"][circle], end=13)
     policy = Policy.model_validate({"replan": "when_blocked", "waits": False} | changed)
     way = build_way(np.array([(0.0, 10.0), (20.0, 10.0)]))
-    found, lengths = follow(world, way, 3, policy)
+    found, _, lengths = follow(world, way, 3, policy)
     assert (found, lengths.tolist()) == (EVENTS[event], progress)
 
 

@@ -11,17 +11,15 @@ class Word(NamedTuple):
     """A position or a verdict.
 
     on: the kind of thing that has it, `number` or `claim`. group: its group in the counts of the
-    outcome. counted: its words in a count. caption: its words in a caption, with braces for the
-    runs. look: the class that colours it. symbol, sign: its mark on a page, and in print.
+    outcome. caption: its words in a caption, with braces for the runs. look: the class that colours
+    it. symbol: its mark.
     """
 
     on: str
     group: str
-    counted: str
     caption: str
     look: str
     symbol: str
-    sign: str
     meaning: str
 
 

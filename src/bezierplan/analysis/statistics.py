@@ -221,8 +221,7 @@ def draw_predictions(
     name: str, values: np.ndarray, size: int, rng: np.random.Generator
 ) -> np.ndarray:
     """Draw experiments with `size` values, as predicted from our values (n,), n at least 1, and
-    return a named statistic of each: (DRAWS,). Values (n, k) are drawn row by row, and each column
-    has its statistic: (DRAWS, k).
+    return a named statistic of each: (DRAWS,).
 
     Experiments are drawn in two stages, because our values are a sample too: first the population,
     then an experiment from it. Numbers are drawn with replacement twice; for booleans, the share is
@@ -245,7 +244,7 @@ def draw_predictions(
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
         chosen = np.maximum.accumulate(asked_first, axis=1)
-        return np.moveaxis(values[np.take_along_axis(world, chosen, axis=1)], 1, -1)
+        return values[np.take_along_axis(world, chosen, axis=1)]
 
     return _draw_in_blocks(name, size, draw)
 

@@ -105,9 +105,8 @@ class Figure(Model):
     @property
     def code(self) -> list[str]:
         """Return the parts of a study's code that its panels call."""
-        own = any(panel.kind == "own" for panel in self.panels)
-        calls = any(getattr(panel, "data", None) for panel in self.panels)
-        return ["metrics", *(["functions"] if calls else []), *(["panels"] if own else [])]
+        called, drawing = map(self._collect_names, ("data", "function"))
+        return ["metrics", *(["functions"] if called else []), *(["panels"] if drawing else [])]
 
     @property
     def names_any(self) -> bool:

@@ -124,4 +124,4 @@ def _format_heads(names: list[str]) -> list[str]:
 def _is_number(column: pd.Series) -> bool:
     """Tell whether a column of text holds numbers, and empty cells or dashes at most."""
     given = column[~column.isin(["", "-"])]
-    return bool(len(given)) and bool(pd.to_numeric(given, errors="coerce").notna().all())
+    return len(given) > 0 and pd.to_numeric(given, errors="coerce").notna().all()

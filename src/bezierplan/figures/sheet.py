@@ -206,8 +206,9 @@ def _describe_equal_paths(letters: list[str], frame: pd.DataFrame) -> str:
     same: dict[bytes, list[str]] = {}
     for number, path in frame[frame["part"] == "path"].groupby("panel"):
         same.setdefault(path[["x", "y"]].to_numpy().tobytes(), []).append(letters[number])
-    several = (", ".join(own) for own in same.values() if len(own) > 1)
-    return " ".join(f"{panels} show the same path." for panels in several)
+    return " ".join(
+        f"{', '.join(own)} show the same path." for own in same.values() if len(own) > 1
+    )
 
 
 def save(figure: Figure, *files: str) -> None:

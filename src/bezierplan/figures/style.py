@@ -6,7 +6,6 @@ differ in line style, width or mark. A method has one look, in all figures of al
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -160,8 +159,7 @@ def choose_looks(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[st
     }
     for method, look in looks.items():
         if not look:
-            counts = Counter(looks.values())
-            looks[method] = min(LOOKS, key=lambda name: counts[name])
+            looks[method] = min(LOOKS, key=[*looks.values()].count)
     return looks
 
 

@@ -161,6 +161,15 @@ def write_samples(
 
 
 @allocation_free
+def find_cell_at(x: float, y: float, cells: np.ndarray) -> tuple[int, int]:
+    """Return column and row of the cell (of an array (rows, columns)) in which a point lies; the
+    upper and the right border belong to the last cells.
+    """
+    rows, columns = cells.shape
+    return min(int(x), columns - 1), min(int(y), rows - 1)
+
+
+@allocation_free
 def _find_cell(coordinate: float, before: int) -> int:
     """Return the column or row of a coordinate; on a grid line, keep that of the sample before if
     it borders the line.

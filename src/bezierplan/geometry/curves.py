@@ -47,9 +47,9 @@ def least_points(curve: str) -> int:
     return max(2, (_DEGREE.get(curve) or 1) + 1)
 
 
-def ends(curve: str) -> tuple[int, int]:
+def ends(curve: str) -> list[int]:
     """Return which control points are start and target; the last of `ferguson` is a tangent."""
-    return (0, -2) if curve == "ferguson" else (0, -1)
+    return [0, -2 if curve == "ferguson" else -1]
 
 
 def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
@@ -252,7 +252,7 @@ def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
     first = differentiate_pieces(pieces, t)
     # Of straight pieces there are no second differences, and their sum is 0.
     second = degree * (degree - 1) * evaluate_pieces(np.diff(pieces, n=2, axis=1), t)
-    speed = np.hypot(first[:, 0], first[:, 1])
+    speed = np.hypot(*first.T)
     moving = speed > STANDSTILL * speed.max()
     kappa = np.full(len(t), np.nan)
     cross = polygons.cross(first, second)
@@ -268,10 +268,9 @@ def curvature_jump(path: Path) -> float:
     tangent turns.
     """
     pieces = bezier_pieces(path)
-    if len(pieces) == 1:
-        return 0.0
-    ends = [curvatures(pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)]
-    (start, start_speed), (end, end_speed) = ends
+    (start, start_speed), (end, end_speed) = (
+        curvatures(pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)
+    )
     fastest = max(start_speed.max(), end_speed.max())
     moving = (start_speed[1:] > STANDSTILL * fastest) & (end_speed[:-1] > STANDSTILL * fastest)
     leaving = pieces[1:, 1] - pieces[1:, 0]

@@ -7,21 +7,22 @@ seam of two touching obstacles enters neither of them and yet is deep inside the
 """
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.bins import Bins, sort_into_bins
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, add_wall, find_occupied_around, find_runs
 from bezierplan.workspaces.polygons import Polygons, cross, list_rings, list_sides, normalise
 from bezierplan.workspaces.problem import Workspace
 
-if TYPE_CHECKING:
-    from bezierplan.geometry.bins import Bins
-
 # Unit vectors whose cross product is at most this count as collinear: a vertex between them is a
 # rounding artefact of the union, not a corner.
 COLLINEAR = 1e-12
+
+# The depth, in units, or on a grid in cells, up to which `is_blocked` calls a point free.
+_TOLERANCE = 1e-9
 
 
 class GridRegion(NamedTuple):
@@ -53,7 +54,7 @@ class GridRegion(NamedTuple):
     blocked: np.ndarray
     counts: np.ndarray
     edges: np.ndarray
-    bins: "Bins"
+    bins: Bins
 
 
 class CircleRegion(NamedTuple):
@@ -77,7 +78,7 @@ class CircleRegion(NamedTuple):
     radii: np.ndarray
     bounds: np.ndarray
     edges: np.ndarray
-    bins: "Bins"
+    bins: Bins
 
 
 class PolygonRegion(NamedTuple):
@@ -105,7 +106,7 @@ class PolygonRegion(NamedTuple):
     following: np.ndarray
     preceding: np.ndarray
     convex: np.ndarray
-    bins: "Bins"
+    bins: Bins
 
 
 Region = GridRegion | CircleRegion | PolygonRegion
@@ -136,7 +137,7 @@ def build_region(workspace: Workspace) -> Region:
     return _build_polygon_region(workspace)
 
 
-def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
+def is_blocked(region: Region, point: tuple[float, float]) -> bool:
     """Tell whether a point lies in the blocked region.
 
     Meant for single points: it needs no compiled code.
@@ -147,18 +148,15 @@ def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e
         The blocked region of a workspace.
     point : tuple of float
         (x, y) in units.
-    tolerance : float
-        The depth, in units, up to which a point is free.
 
     Returns
     -------
     bool
-        Whether it lies deeper than the tolerance.
+        Whether it lies deeper than 1e-9.
     """
     if isinstance(region, GridRegion):
         column, row = (
-            _element(value / region.cell, tolerance)
-            for value in from_origin(np.array(point), region)
+            _element(value / region.cell) for value in from_origin(np.array(point), region)
         )
         inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
         return not inside or bool(region.blocked[row, column])
@@ -167,7 +165,7 @@ def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e
         left, right, bottom, top = region.bounds
         deepest = max(left - x, x - right, bottom - y, y - top)
         in_discs = region.radii - np.hypot(x - region.centres[:, 0], y - region.centres[:, 1])
-        return in_discs.max(initial=deepest) > tolerance
+        return in_discs.max(initial=deepest) > _TOLERANCE
     begin, end = region.edges[:, :2], region.edges[:, 2:]
     along = end - begin
     share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
@@ -176,7 +174,7 @@ def is_blocked(region: Region, point: tuple[float, float], tolerance: float = 1e
     # number of times.
     across = (begin[:, 1] > y) != (end[:, 1] > y)
     crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
-    return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
+    return nearest > _TOLERANCE and int((crossing > x).sum()) % 2 == 0
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
@@ -186,20 +184,18 @@ def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
     return points - region.origin if isinstance(region, GridRegion) else points
 
 
-def _element(coordinate: float, tolerance: float) -> int:
+def _element(coordinate: float) -> int:
     """Return the index in the doubled grid of a coordinate in cells: the grid line's if it lies on
     one, otherwise the cell's.
     """
     line = round(coordinate)
     return (
-        2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
+        2 * line + 1 if abs(coordinate - line) <= _TOLERANCE else 2 * int(np.floor(coordinate)) + 2
     )
 
 
 def _build_grid_region(grid: Grid) -> GridRegion:
     """Build the region of cells, as elements of the doubled grid."""
-    from bezierplan.geometry.bins import sort_into_bins
-
     cells = add_wall(grid.occupied)
     blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), bool)
     blocked[::2, ::2] = cells
@@ -227,8 +223,6 @@ def _build_grid_region(grid: Grid) -> GridRegion:
 
 def _build_circle_region(circles: Circles) -> CircleRegion:
     """Build the region of discs and of the outside of the border."""
-    from bezierplan.geometry.bins import sort_into_bins
-
     left, right, bottom, top = circles.bounds
     corners = [[left, bottom], [right, bottom], [right, top], [left, top]]
     edges = list_sides(np.array(corners, float))
@@ -246,8 +240,6 @@ def _build_polygon_region(polygons: Polygons) -> PolygonRegion:
     """Build the blocked region of a map of polygons (the obstacles and all beyond the border) as
     edges with free space to their left.
     """
-    from bezierplan.geometry.bins import sort_into_bins
-
     cornered = [_list_corners(ring) for ring in list_rings(polygons.free())]
     begin = np.concatenate([np.empty((0, 2)), *cornered])
     following = np.empty(len(begin), np.int64)

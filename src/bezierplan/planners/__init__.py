@@ -113,9 +113,7 @@ def load_planner(planner: str) -> ModuleType:
 
 def list_planners() -> list[str]:
     """List the names of the planners of this package."""
-    return sorted(
-        file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__"
-    )
+    return sorted(file.stem for file in File(__file__).parent.glob("[!_]*.py"))
 
 
 @cache

@@ -16,12 +16,11 @@ import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import NOT_NEGATIVE, with_settings
 from bezierplan.planners.parts.sorting import ascending
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("first_length", "turns")
 workspaces = ("grid",)
@@ -88,7 +87,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Hernandez-Belmonte (2015).
     """
     grid = problem.workspace
-    start, target = grid.in_cells(np.array([problem.start, problem.target], float))
+    start, target = grid.in_cells(problem.ends)
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     # One point cannot be shortened.
     if problem.start == problem.target:
@@ -103,7 +102,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     points, history = _evolve(evolution, grid.occupied, _cut_short(grid.occupied, path), rules)
     history *= grid.cell
     points = grid.in_units(points)
-    points[[0, -1]] = problem.start, problem.target
+    points[[0, -1]] = problem.ends
     return Plan(
         path=Path("polyline", points),
         objective=history[-1],
@@ -131,10 +130,7 @@ def _build_first_path(rng, occupied, start, target, rules):
         if is_free_leg(occupied, path[count - 1], target):
             path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
-        if (
-            count <= _MOST_POINTS
-            and _append_next_point(rng, occupied, target, path, count, rules) >= _UNSEEN
-        ):
+        if _append_next_point(rng, occupied, target, path, count, rules) >= _UNSEEN:
             break
     return np.empty((0, 2))
 

@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Plan, Problem, Range
 from bezierplan.planners.parts.cell_paths import (
     build_lattice,
     measure_length,
@@ -24,13 +24,12 @@ from bezierplan.planners.parts.cell_paths import (
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
-from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
 
 
-TrailUpdate = IntEnum("TrailUpdate", "ant_system ant_colony_system", start=0)
+TrailUpdate = IntEnum("TrailUpdate", "ant_system ant_colony_system")
 
 
 class Settings(NamedTuple):

@@ -15,9 +15,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.cell_length import sum_of_steps
+from bezierplan.geometry.cell_length import find_cell_at, sum_of_steps
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.genetic import (
     breed,
     change_gene,
@@ -37,18 +37,17 @@ from bezierplan.planners.parts.settings import (
     with_settings,
 )
 from bezierplan.workspaces.grid import ON_LINE, Grid
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples", "safety_term")
 workspaces = ("grid",)
 
-CurveKind = IntEnum("CurveKind", "bezier piecewise_quadratic", start=0)
-Initial = IntEnum("Initial", "uniform sorted feasible", start=0)
+CurveKind = IntEnum("CurveKind", "bezier piecewise_quadratic")
+Initial = IntEnum("Initial", "uniform sorted feasible")
 Fitness = IntEnum(
-    "Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0
+    "Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed"
 )
-FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance", start=0)
-Mutation = IntEnum("Mutation", "bit_flip cell per_gene", start=0)
+FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance")
+Mutation = IntEnum("Mutation", "bit_flip cell per_gene")
 
 # Maximum number of draws of a chromosome until its curve is free.
 _FEASIBLE_TRIES = 200
@@ -178,7 +177,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     if problem.start == problem.target:
         # Start and target coincide: there is no length to minimise and no distance to divide by.
-        point = Path("bezier", np.array([problem.start, problem.target]))
+        point = Path("bezier", problem.ends)
         return Plan.of_one(point, 0.0, "generations", {"bad_samples": 0, "safety_term": 0.0})
     if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
@@ -186,7 +185,16 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     rules = convert_to_cells(settings, grid.cell)
     curve = CurveKind(settings.curve).name
     cells = _prepare_cells(grid, math.ceil(rules.safety_distance))
-    sampled = _sample_curve(problem, curve, settings.control_points, settings.samples)
+    ends, free = compute_basis(curve, settings.control_points, settings.samples)
+    sampled = _Curve(
+        grid.in_cells(problem.ends).T @ ends,
+        free,
+        math.dist(*problem.ends) / grid.cell,
+        grid.cell,
+        np.empty(2 * settings.control_points),
+        np.empty((2, settings.samples)),
+        np.empty(settings.samples),
+    )
     # Moves have a generator of their own: they do not depend on how often first curves are redrawn.
     starts, moves = rng.spawn(2)
     codes = cells.free[
@@ -298,22 +306,6 @@ def _prepare_cells(grid: Grid, reach: int) -> _Cells:
         free,
         near,
         np.searchsorted(at, np.arange(rows * columns + 1)),
-    )
-
-
-def _sample_curve(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
-    """Prepare the samples of a curve for the kernels."""
-    ends, free = compute_basis(curve, control_points, samples)
-    grid = problem.workspace
-    straight = math.dist(problem.start, problem.target) / grid.cell
-    return _Curve(
-        grid.in_cells(np.array([problem.start, problem.target])).T @ ends,
-        free,
-        straight,
-        grid.cell,
-        np.empty(2 * control_points),
-        np.empty((2, samples)),
-        np.empty(samples),
     )
 
 
@@ -447,12 +439,11 @@ def count_collisions(x, y, occupied):
 
     Touching is allowed.
     """
-    rows, columns = occupied.shape
     bad = 0
-    column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
+    column, row = find_cell_at(x[0], y[0], occupied)
     for s in range(len(x)):
         last_column, last_row = column, row
-        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
+        column, row = find_cell_at(x[s], y[s], occupied)
         if occupied[row, column] and _is_inside(x[s], column) and _is_inside(y[s], row):
             bad += 1
         # A chord within one cell, or to a cell that shares a side, passes through no other.
@@ -474,13 +465,12 @@ def _cuts_obstacle(x, y, x_end, y_end, occupied):
     The chord is divided so that no part crosses two grid lines of the same kind; a part that
     crosses one of each kind passes through one more cell.
     """
-    rows, columns = occupied.shape
     parts = int(max(abs(x_end - x), abs(y_end - y))) + 1
     step_x, step_y = (x_end - x) / parts, (y_end - y) / parts
-    column, row = min(int(x), columns - 1), min(int(y), rows - 1)
+    column, row = find_cell_at(x, y, occupied)
     for part in range(1, parts + 1):
         next_x, next_y = x + step_x, y + step_y
-        next_column, next_row = min(int(next_x), columns - 1), min(int(next_y), rows - 1)
+        next_column, next_row = find_cell_at(next_x, next_y, occupied)
         if (
             part < parts
             and occupied[next_row, next_column]
@@ -505,10 +495,10 @@ def _measure_clearance(x, y, cells):
 
     It is infinite if there are none.
     """
-    rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):
-        cell = columns * min(int(y[s]), rows - 1) + min(int(x[s]), columns - 1)
+        column, row = find_cell_at(x[s], y[s], cells.occupied)
+        cell = cells.occupied.shape[1] * row + column
         for k in range(cells.first[cell], cells.first[cell + 1]):
             column, row = cells.near[k, 0], cells.near[k, 1]
             dx = max(column - x[s], 0.0, x[s] - column - 1)

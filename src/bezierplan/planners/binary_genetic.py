@@ -18,7 +18,7 @@ import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.genetic import (
     breed,
     check_curve,
@@ -36,20 +36,19 @@ from bezierplan.planners.parts.settings import (
     with_settings,
 )
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples",)
 # A run that reports its last generation can lose the best path.
 keeps_best = False
 workspaces = ("grid",)
 
-Curve = IntEnum("Curve", "polyline piecewise_quadratic piecewise_cubic bezier", start=0)
-Spacing = IntEnum("Spacing", "parameter arc_length", start=0)
-Cut = IntEnum("Cut", "bit gene", start=0)
-Mutation = IntEnum("Mutation", "one_bit each_gene each_bit", start=0)
-PenaltyFor = IntEnum("PenaltyFor", "each_sample path per_cell", start=0)
-Report = IntEnum("Report", "best_so_far last_generation", start=0)
-Rejection = IntEnum("Rejection", "all consecutive harmless none", start=0)
+Curve = IntEnum("Curve", "polyline piecewise_quadratic piecewise_cubic bezier")
+Spacing = IntEnum("Spacing", "parameter arc_length")
+Cut = IntEnum("Cut", "bit gene")
+Mutation = IntEnum("Mutation", "one_bit each_gene each_bit")
+PenaltyFor = IntEnum("PenaltyFor", "each_sample path per_cell")
+Report = IntEnum("Report", "best_so_far last_generation")
+Rejection = IntEnum("Rejection", "all consecutive harmless none")
 
 
 class Settings(NamedTuple):
@@ -160,14 +159,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     places = np.vstack(
         [
             np.column_stack([column, row]) + 0.5,
-            grid.in_cells(np.array([problem.start, problem.target])),
+            grid.in_cells(problem.ends),
         ]
     )
     ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
     if settings.genes == 0 or problem.start == problem.target:
         # No search needed: one chromosome, the straight line or the point.
-        settings = settings._replace(population=1, generations=0)
+        settings = settings._replace(population=1, generations=0, occupied_point_penalty=0.0)
         cells = np.full((1, settings.genes + 2), ends[0])
     else:
         cells = np.empty((settings.population, settings.genes + 2), np.int64)
@@ -191,7 +190,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
     points = grid.in_units(places[best])
     # Start and target went into cells and back, which can change their last bits.
-    points[[0, -1]] = problem.start, problem.target
+    points[[0, -1]] = problem.ends
     path = Path(curve, points)
     rest = drop_repeated_points(points, settings.rejection == Rejection.consecutive)
     if settings.rejection != Rejection.none and len(rest) < len(points):
@@ -247,8 +246,8 @@ def find_stretches(basis: np.ndarray) -> np.ndarray:
 
     Returns (stretches, 4): first and last control point, first and last sample.
     """
-    first = (basis != 0).argmax(axis=1)
-    last = basis.shape[1] - 1 - (basis != 0)[:, ::-1].argmax(axis=1)
+    used = basis != 0
+    first, last = used.argmax(axis=1), basis.shape[1] - 1 - used[:, ::-1].argmax(axis=1)
     support = np.column_stack([np.minimum(first[:-1], first[1:]), np.maximum(last[:-1], last[1:])])
     begins = np.flatnonzero(np.any(support[1:] != support[:-1], axis=1)) + 1
     begins = np.concatenate([[0], begins, [len(support)]])

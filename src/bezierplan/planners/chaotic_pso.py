@@ -20,7 +20,7 @@ import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
@@ -31,7 +31,6 @@ from bezierplan.planners.parts.settings import (
     fill_settings,
     with_settings,
 )
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
     "violation",
@@ -46,13 +45,13 @@ extra = (
 )
 workspaces = ("circles", "polygons")
 
-ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social", start=0)
-RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration", start=0)
-BoundRule = IntEnum("BoundRule", "mirror clamp stop", start=0)
-Curve = IntEnum("Curve", "bezier spline ferguson", start=0)
-StartRule = IntEnum("StartRule", "random fixed uniform", start=0)
-ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
-Tested = IntEnum("Tested", "samples control_points", start=0)
+ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social")
+RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration")
+BoundRule = IntEnum("BoundRule", "mirror clamp stop")
+Curve = IntEnum("Curve", "bezier spline ferguson")
+StartRule = IntEnum("StartRule", "random fixed uniform")
+ZetaFor = IntEnum("ZetaFor", "iteration particle dimension")
+Tested = IntEnum("Tested", "samples control_points")
 
 # This share of the particles starts around a given path, at a distance of about this share of the
 # field's side per coordinate.
@@ -315,7 +314,7 @@ def _build_objective(problem: Problem, settings: Settings) -> Objective:
         Curve(settings.curve).name, settings.control_points, settings.samples
     )
     return Objective(
-        ends=np.array([problem.start, problem.target]).T @ ends,
+        ends=problem.ends.T @ ends,
         free=free,
         balls=penalised.round_obstacles(problem.workspace, settings.d_min),
         polygons=penalised.grow_polygons(problem.workspace, settings.d_min),
@@ -328,7 +327,7 @@ def _place_points(position: np.ndarray, curve: str, problem: Problem) -> np.ndar
     """Return the control points (n + 2, 2) of a particle (2 n,)."""
     n = len(position) // 2
     points = np.empty((n + 2, 2))
-    points[list(curves.ends(curve))] = problem.start, problem.target
+    points[curves.ends(curve)] = problem.ends
     points[penalised.find_free_points(curve, n)] = position.reshape(2, n).T
     return points
 
@@ -341,7 +340,7 @@ def _draw_zeta(
     Returns its values (iterations, particles or 1, dimensions or 1), the number of those clipped,
     and the iteration at which it collapsed.
     """
-    shape = size[: settings.zeta_for + 1]
+    shape = size[: settings.zeta_for]
     shape += (1,) * (3 - len(shape))
     if settings.chaotic_term == ChaoticTerm.none:
         return chaotic_maps.Sequence(np.zeros(shape), 0, 0)

@@ -14,21 +14,20 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.cell_length import find_cell_at
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.bca import count_collisions
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.genetic import check_curve, copy
-from bezierplan.planners.parts.penalised import FEASIBLE
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import NOT_NEGATIVE, UNITS, convert_to_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
-from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("circles", "polygons", "grid")
 
-Curve = IntEnum("Curve", "bezier piecewise_quadratic piecewise_cubic", start=0)
-Collision = IntEnum("Collision", "samples chords", start=0)
+Curve = IntEnum("Curve", "bezier piecewise_quadratic piecewise_cubic")
+Collision = IntEnum("Collision", "samples chords")
 
 
 class Settings(NamedTuple):
@@ -108,11 +107,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     cells = isinstance(world, Grid)
     origin, cell = (np.array(world.origin), world.cell) if cells else (np.zeros(2), 1.0)
     rules = convert_to_cells(settings, cell)
-    ends = (np.array([problem.start, problem.target]) - origin) / cell
+    ends = (problem.ends - origin) / cell
     low, high = (np.reshape(world.bounds, (2, 2)).T - origin) / cell
-    of_ends, of_free = penalised.compute_basis(
-        Curve(rules.curve).name, rules.control_points, rules.samples
-    )
+    curve = Curve(rules.curve).name
+    of_ends, of_free = penalised.compute_basis(curve, rules.control_points, rules.samples)
     objective = penalised.Objective(
         ends=ends.T @ of_ends,
         free=of_free,
@@ -131,9 +129,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     best, history, violation = _evolve(moves, x, low, high, objective, occupied, rules)
     free = best.reshape(2, -1).T * cell + origin
     return Plan(
-        path=Path(Curve(rules.curve).name, np.vstack([problem.start, free, problem.target])),
+        path=Path(curve, np.vstack([problem.start, free, problem.target])),
         objective=history[-1] * cell,
-        claimed_feasible=violation <= FEASIBLE,
+        claimed_feasible=violation <= penalised.FEASIBLE,
         evaluations=rules.population * (rules.generations + 1),
         history=history * cell,
         stop="generations",
@@ -208,15 +206,14 @@ def _compute_cost(vector, objective, occupied, rules, scratch):
     else:
         violation = count_collisions(curve[0], curve[1], occupied) / curve.shape[1]
     cost = length * (1.0 + rules.factor * violation) + rules.collision_penalty * violation
-    return cost + (rules.surcharge if violation > FEASIBLE else 0.0), violation
+    return cost + (rules.surcharge if violation > penalised.FEASIBLE else 0.0), violation
 
 
 @allocation_free
 def _count_samples_in_occupied_cells(curve, occupied):
     """Count the samples (2, samples) after the first in occupied cells (song2016, eq. 9)."""
-    rows, columns = occupied.shape
     bad = 0
     for s in range(1, curve.shape[1]):
-        row, column = int(curve[1, s] + ON_LINE), int(curve[0, s] + ON_LINE)
-        bad += occupied[min(row, rows - 1), min(column, columns - 1)]
+        column, row = find_cell_at(curve[0, s] + ON_LINE, curve[1, s] + ON_LINE, occupied)
+        bad += occupied[row, column]
     return bad

@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.cell_paths import cut_loops, draw_common_cell, put
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
@@ -25,7 +25,6 @@ from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import add_wall
 from bezierplan.workspaces.lattice import drop_straight_vertices
-from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True
@@ -80,15 +79,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     grid = problem.workspace
     walls = add_wall(grid.occupied)
-    ends = grid.in_cells(np.array([problem.start, problem.target], float))
+    ends = grid.in_cells(problem.ends)
     # An end on the upper or right border lies in the last cell; the frame shifts all by one.
-    (start_column, target_column), (start_row, target_row) = (
-        np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
-    )
+    column, row = np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    start = start_row * walls.shape[1] + start_column
-    target = target_row * walls.shape[1] + target_column
+    start, target = row * walls.shape[1] + column
     cells, history = _search(*rng.spawn(2), walls.ravel(), walls.shape[1], start, target, settings)
     history *= grid.cell
     if len(cells) == 0:

@@ -15,17 +15,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Plan, Problem, Range
 from bezierplan.planners.parts import cell_paths
-from bezierplan.planners.parts.genetic import (
-    breed,
-    change_gene,
-    check_pairs,
-)
+from bezierplan.planners.parts.genetic import breed, change_gene, check_pairs
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import SHARE, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice
-from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -36,9 +31,9 @@ _MOST_DRAWS = 10_000
 _UNDECODABLE = 200.0
 
 
-Coding = IntEnum("Coding", "via_cells rows", start=0)
-Initial = IntEnum("Initial", "uniform sorted", start=0)
-Mutation = IntEnum("Mutation", "cell bit_flip", start=0)
+Coding = IntEnum("Coding", "via_cells rows")
+Initial = IntEnum("Initial", "uniform sorted")
+Mutation = IntEnum("Mutation", "cell bit_flip")
 
 
 class Settings(NamedTuple):
@@ -111,11 +106,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         free = np.flatnonzero(~places.occupied)
         cells = np.empty((population, genes + 2), np.int64)
         cells[:, 0], cells[:, -1] = places.start, places.target
-        cells[:, 1:-1] = free[starts.integers(0, len(free), size=(population, genes))]
+        drawn = free[starts.integers(0, len(free), size=(population, genes))]
         if settings.initial == Initial.sorted:
             # A stable sort: cells of the same sum keep the order in which they were drawn.
-            order = np.argsort((places.row + places.column)[cells[:, 1:-1]], axis=1, kind="stable")
-            cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
+            order = np.argsort((places.row + places.column)[drawn], axis=1, kind="stable")
+            drawn = np.take_along_axis(drawn, order, axis=1)
+        cells[:, 1:-1] = drawn
         best, history = _search(moves, places, free, cells, settings)
     else:
         paths, sizes = _draw_first_paths(starts, places, population, settings.longest_join)

@@ -20,7 +20,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.diversity import count_shared
 from bezierplan.planners.parts.gene_curves import (
@@ -34,7 +34,6 @@ from bezierplan.planners.parts.gene_lattice import Field, build_field, build_pol
 from bezierplan.planners.parts.genetic import check_pairs, copy, is_same
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
     "distinct_chromosomes",
@@ -53,9 +52,9 @@ _ROOM = 2 * MOST_POINTS + 1
 # Cost of a chromosome that fills a place in the first population because no valid one was found.
 _UNFIT = 1e9
 
-Diversity = IntEnum("Diversity", "none more_offspring relaxing unique", start=0)
-GeneLattice = IntEnum("GeneLattice", "coarse cell", start=0)
-PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
+Diversity = IntEnum("Diversity", "none more_offspring relaxing unique")
+GeneLattice = IntEnum("GeneLattice", "coarse cell")
+PointOrder = IntEnum("PointOrder", "projection index geodesic")
 
 # Invalid draws in a row after which random chromosomes get up to twice as many control points.
 _BARREN = 400
@@ -199,7 +198,7 @@ def plan(
     elhoseny2017, Algorithms 1 and 2, Sections 3.2 and 3.3.
     """
     grid = problem.workspace
-    ends = grid.in_cells(np.array([problem.start, problem.target], float))
+    ends = grid.in_cells(problem.ends)
     if problem.start == problem.target:
         nothing = dict.fromkeys(extra, math.nan) | dict.fromkeys(extra[:1], 0.0)
         nothing |= dict.fromkeys(("loops", "endless_loops", "extra_batches"), 0)
@@ -216,7 +215,7 @@ def plan(
     result = search(rng, field, settings, known, prepare_scratch(field))
     solved = len(result.ones) > 0
     points = grid.in_units(build_polygon(result.ones, field))
-    points[[0, -1]] = problem.start, problem.target
+    points[[0, -1]] = problem.ends
     chained = settings.curve == CurveKind.chain and len(points) > 3
     return Plan(
         path=Path("piecewise_cubic" if chained else "bezier", points) if solved else None,

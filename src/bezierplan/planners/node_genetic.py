@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.genetic import check_pairs, copy, draw_parents
 from bezierplan.planners.parts.node_mutation import (
     Mutation,
@@ -41,7 +41,6 @@ from bezierplan.workspaces.ground import (
     count_obstacles_on,
     find_least_energy,
 )
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = (
     "optimum",
@@ -56,13 +55,13 @@ workspaces = ("grid",)
 exact = True
 keeps_best = False
 
-Initial = IntEnum("Initial", "feasible rejection unrestricted", start=0)
-Selection = IntEnum("Selection", "linear_rank best_half roulette", start=0)
-Cut = IntEnum("Cut", "same independent", start=0)
-MutationFor = IntEnum("MutationFor", "path node", start=0)
-RandomNode = IntEnum("RandomNode", "free any", start=0)
-Result = IntEnum("Result", "last_generation best_so_far", start=0)
-Corners = IntEnum("Corners", "open closed", start=0)
+Initial = IntEnum("Initial", "feasible rejection unrestricted")
+Selection = IntEnum("Selection", "linear_rank best_half roulette")
+Cut = IntEnum("Cut", "same independent")
+MutationFor = IntEnum("MutationFor", "path node")
+RandomNode = IntEnum("RandomNode", "free any")
+Result = IntEnum("Result", "last_generation best_so_far")
+Corners = IntEnum("Corners", "open closed")
 
 # Walks tried for one path of the first population before it counts as unreachable.
 _MOST_TRIES = 1_000_000

@@ -16,11 +16,10 @@ import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
 from bezierplan.kernels import compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.trace import trace_back
 
 extra = ("roads",)
@@ -35,7 +34,7 @@ _MOST_DRAWS = 10_000
 _TOUCHING = 1e-9
 
 
-Links = IntEnum("Links", "visible nearest", start=0)
+Links = IntEnum("Links", "visible nearest")
 
 
 class Settings(NamedTuple):
@@ -94,7 +93,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     # Later roadmaps take further numbers of the same generator.
     while drawn < settings.attempts and not len(way):
         free = _draw_free_points(rng, settings.nodes, low, high, is_free)
-        points = np.concatenate([[problem.start, problem.target], free])
+        points = np.concatenate([problem.ends, free])
         one, other = _list_pairs(points, neighbours)
         seen = sees(points[one], points[other])
         one, other = one[seen], other[seen]

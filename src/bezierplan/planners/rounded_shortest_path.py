@@ -21,12 +21,11 @@ from bezierplan.geometry.checker import find_first_collision
 from bezierplan.geometry.checker.hulls import measure_distance
 from bezierplan.geometry.region import Region, build_region, from_origin
 from bezierplan.kernels import allocation_free, compile_kernel
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Path, Plan, Problem, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons, cross, normalise
-from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("turns", "corners", "least_radius")
 exact = True
@@ -203,7 +202,7 @@ def _round(
     for workspace in (problem.workspace, None):
         inner = find_turns(bound.points, workspace)
         turns = Turns(*(np.pad(each, [(1, 1), (0, 0)][: each.ndim]) for each in inner))
-        turns.corner[[0, -1]] = problem.start, problem.target
+        turns.corner[[0, -1]] = problem.ends
         turns.side[[0, -1]] = _NO_SIDE
         course = Course(
             turns,

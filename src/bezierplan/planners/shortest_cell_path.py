@@ -8,9 +8,8 @@ import numpy as np
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.cell_length import DIAGONAL
-from bezierplan.planners import Plan
+from bezierplan.planners import Path, Plan, Problem
 from bezierplan.workspaces.lattice import drop_straight_vertices
-from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 deterministic = True
@@ -25,7 +24,7 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     or infinite if there is no path.
     """
     grid = problem.workspace
-    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    start, target = (grid.cell_of(*end) for end in problem.ends)
     bound = shortest_paths.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
     path = None
     if math.isfinite(bound.length):
@@ -34,6 +33,6 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
         if len(points) == 1:
             points = points.repeat(2, axis=0)
         # A computed cell centre can differ from the given one in the last bit.
-        points[[0, -1]] = problem.start, problem.target
+        points[[0, -1]] = problem.ends
         path = Path("polyline", points)
     return Plan.of_one(path, bound.length * grid.cell, "exact")

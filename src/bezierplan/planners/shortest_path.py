@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.planners import Plan
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.planners import Path, Plan, Problem
 
 exact = True
 

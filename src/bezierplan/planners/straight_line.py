@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from bezierplan.planners import Plan
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.planners import Path, Plan, Problem
 
 deterministic = True
 
@@ -16,5 +15,5 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     It ignores obstacles and claims every path to be free.
     """
     length = math.dist(problem.start, problem.target)
-    path = Path("polyline", np.array([problem.start, problem.target]))
+    path = Path("polyline", problem.ends)
     return Plan.of_one(path, length, "direct")

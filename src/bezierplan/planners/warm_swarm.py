@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from bezierplan.geometry import curves
-from bezierplan.planners import Plan
+from bezierplan.planners import Plan, Problem
 from bezierplan.planners.chaotic_pso import check, plan, track, workspaces
-from bezierplan.workspaces.problem import Problem
 
 __all__ = ["check", "plan", "resume", "track", "workspaces"]
 

@@ -14,7 +14,6 @@ reproduced.
 
 import csv
 import typing
-from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, NewType
 
@@ -51,7 +50,8 @@ def read_tables(module: str) -> list[type]:
     """Read the file columns.csv next to a module; return a named tuple for each of its tables."""
     fields: dict[str, list[tuple[str, Any]]] = {}
     with Path(module).with_suffix(".csv").open(encoding="utf-8", newline="") as file:
-        for table, name, values, *about in islice(csv.reader(file), 1, None):
+        next(file)  # the head
+        for table, name, values, *about in csv.reader(file):
             kind, column = VALUES[values], Column(*about)
             fields.setdefault(table, []).append((name, Annotated[kind, column]))
     return [NamedTuple(table, of) for table, of in fields.items()]

@@ -27,8 +27,6 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
     done = ways.measure_lengths(points)
     travelled, collision = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
-    lengths = [plan.length for plan in ride.plans]
-    until = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
     # The leg that leads to the collision: what the robot did before, not what it does once it is
     # hit.
     leg = 1 + np.searchsorted(times[1:-1], verdict.collision_at)
@@ -47,7 +45,7 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
         evaluations=sum(plan.evaluations for plan in ride.plans),
         generations=ride.replans,
         stop="arrived" if ride.arrived else "time",
-        history=[way + length for way, length in zip(until, lengths)],
+        history=[float(np.interp(plan.time, times, done)) + plan.length for plan in ride.plans],
         path_curve=curve,
         path_points=vertices,
     )
@@ -55,8 +53,8 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
         arrival=end if ride.arrived else math.nan,
         steps=end,
         travelled=travelled,
-        first_plan=lengths[0],
-        last_plan=lengths[-1],
+        first_plan=ride.plans[0].length,
+        last_plan=ride.plans[-1].length,
         last_optimum=_last_optimum(ride, world, problem),
         replans=ride.replans,
         waits=float(ride.waited),
@@ -81,7 +79,7 @@ def judge_drive(ride: Ride, drew: bool, problem: Problem, world: World) -> tuple
 
 def joins_ends(points: np.ndarray, problem: Problem) -> bool:
     """Return whether a way (n, 2) leads exactly from a problem's start to its target."""
-    return np.array_equal(points[[0, -1]], (problem.start, problem.target))
+    return np.array_equal(points[[0, -1]], problem.ends)
 
 
 def trace_path(ride: Ride) -> Path:
@@ -103,9 +101,8 @@ def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
 
 def replan_times(ride: Ride) -> DriveTimes:
     """Return statistics of the CPU seconds of all plans after the first."""
-    seconds = np.array([plan.seconds for plan in ride.plans[1:]])
-    if not len(seconds):
-        return DriveTimes(math.nan, math.nan, math.nan)
+    # Without a further plan all are nan.
+    seconds = [plan.seconds for plan in ride.plans[1:]] or [math.nan]
     return DriveTimes(
-        float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max())
+        float(np.mean(seconds)), float(np.quantile(seconds, 0.95)), float(np.max(seconds))
     )

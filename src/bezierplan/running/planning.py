@@ -127,9 +127,8 @@ def join_answers(answers: Sequence[Plan]) -> Plan:
     corners = sum(_has_corner(arriving, leaving) for arriving, leaving in pairwise(paths))
     extra = {name: sum(answer.extra[name] for answer in answers) for name in answers[0].extra}
     if "least_radius" in extra:
-        least = min(answer.extra["least_radius"] for answer in answers)
         extra |= {name: extra[name] + corners for name in ("turns", "corners")}
-        extra["least_radius"] = least
+        extra["least_radius"] = min(answer.extra["least_radius"] for answer in answers)
     points = [paths[0].points, *(path.points[1:] for path in paths[1:])]
     objective = sum(answer.objective for answer in answers)
     return answers[0]._replace(

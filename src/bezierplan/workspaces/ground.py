@@ -23,7 +23,7 @@ from bezierplan.workspaces.trace import trace_back
 # of their number. At this one both tables take 42 MB, and those of the last eight maps are kept.
 TABLE_CELLS = 2048
 
-Neighbourhood = IntEnum("Neighbourhood", "eight four within_two", start=0)
+Neighbourhood = IntEnum("Neighbourhood", "eight four within_two")
 """The neighbours of a cell: the eight around it, the four beside it, or all at most two columns and
 rows away."""
 

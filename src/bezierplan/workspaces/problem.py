@@ -25,6 +25,11 @@ class Problem(NamedTuple):
     start: tuple[float, float]
     target: tuple[float, float]
 
+    @property
+    def ends(self) -> np.ndarray:
+        """Return start and target (2, 2), in the workspace's unit."""
+        return np.array([self.start, self.target], float)
+
 
 class Path(NamedTuple):
     """A path, given by the control points of its curve.

@@ -69,14 +69,12 @@ def check_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) ->
     table that reproduces it: the columns within whose values its rows are ranked, metrics of which
     only some runs count, the orders that its rows must keep.
     """
-    if not tables:
-        return []
     rows = []
-    for name, table in tables.items():
-        picks = [entry.metric for entry in specs[name].values if entry.where]
+    for name, spec in specs.items():
+        table, picks = tables[name], [entry.metric for entry in spec.values if entry.where]
         rows += check_statistics(name, table, picks)
-        rows += check_ranks(name, table, specs[name].across)
-        for rule in specs[name].monotone:
+        rows += check_ranks(name, table, spec.across)
+        for rule in spec.monotone:
             rows += check_orders(name, table, rule)
     return merge_rows(rows)
 
@@ -220,7 +218,7 @@ def check_paper(
         if name not in job.reconstructed:
             bounds = pd.read_parquet(experiment_files[spec.experiment].bounds).set_index("problem")
             rows += check_lengths(name, published[name], bounds, spec.primary)
-    rows += check_any_paper({name: published[name] for name in job.tables}, job.tables)
+    rows += check_any_paper(published, job.tables)
     for name, spec in job.tables.items():
         if spec.identify:
             made, _ = problems.read(experiment_files[spec.experiment].problems)

@@ -99,7 +99,7 @@ def find_polylines(
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return None
-    ends = grid.in_cells(np.array([problem.start, problem.target]))
+    ends = grid.in_cells(problem.ends)
     if not np.allclose(ends % 1, 0.5):
         return None
     column, row = ends.astype(int).T

@@ -267,9 +267,9 @@ class WithMargin(OfRuns):
 class Comparing(WithMargin):
     """The keys that all checks share that compare groups."""
 
-    against: ClassVar[bool] = True
-    cells_key: ClassVar[str | None] = "across"
-    reference: ClassVar[int] = 1
+    against = True
+    cells_key = "across"
+    reference = 1
 
     across: Column = Field(
         "method", description="the column whose values are the groups; left out: method"

@@ -278,7 +278,7 @@ def _note_success_rates(check: OfRuns, rows: pd.DataFrame, cells: list) -> str:
     ):
         return ""
     values = [rows.loc[rows[check.cells] == cell, "value"] for cell in cells]
-    counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
+    counts = [[each.notna().sum(), each.isna().sum()] for each in values]
     from scipy import stats
 
     return (

@@ -281,8 +281,7 @@ def measure_effect(check: OfRuns, comparison: Contrast, name: str) -> tuple[Find
     n = count_units(comparison)
     if reason := explain_too_few(comparison):
         return Finding(ours, n=n, mark="?", reason=reason), np.empty(0)
-    margin = compute_margin(check, comparison)
-    finding = Finding(ours, n=n, margin=margin)
+    finding = Finding(ours, n=n, margin=compute_margin(check, comparison))
     if check.point_statistic in WITHOUT_INTERVAL:
         return _judge_by_draws(check, comparison, name, finding), np.empty(0)
     draws = draw_effects(check, comparison, name)

@@ -109,7 +109,7 @@ def _judge_variant(
         "published": f"{sum(held)} of {len(held)}" if held else "not printed",
     }
     if decisive:
-        row |= _describe_verdict(claim, deciding, decisive, material)
+        row |= _describe_verdict(claim, deciding, decisive)
     else:
         row |= {"verdict": "untestable", "reason": obstacle}
     rows = [
@@ -123,36 +123,28 @@ def _judge_variant(
 
 
 def _describe_verdict(
-    claim: Claim,
-    deciding: list[MarkedComparison],
-    decisive: MarkedComparison,
-    material: Material,
+    claim: Claim, deciding: list[MarkedComparison], decisive: MarkedComparison
 ) -> dict:
     """Reach the verdict on a claim from its comparisons; return the fields of its row that follow
     from it.
 
     deciding: the primary comparisons. decisive: the one whose effect is shown.
     """
-    finding, holds = decisive.finding, claim.holds
     verdict = verdicts.judge_marks(
-        [entry.mark for entry in deciding], [entry.mark_family for entry in deciding], holds
+        [entry.mark for entry in deciding], [entry.mark_family for entry in deciding], claim.holds
     )
     # Our runs are enough: what stays open is the chance of one experiment.
     if verdict == "undecided" and all(
         entry.finding.chance_known for entry in deciding if entry.mark_family == "?"
     ):
         verdict = "depends"
-    reasons = [
-        sentences.note_own_criterion(claim, verdict),
-        _write_reason(decisive),
-        claim.note,
-    ]
-    return finding._asdict() | {
+    own = sentences.note_own_criterion(claim, verdict)
+    return decisive.finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(entry.mark == '+' for entry in deciding)} of {len(deciding)}",
         "counted": decisive.comparison.counted,
         "p_family": decisive.p_family,
-        "reason": sentences.join_notes(*reasons),
+        "reason": sentences.join_notes(own, _write_reason(decisive), claim.note),
     }
 
 

@@ -101,9 +101,7 @@ def compare(
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     _refuse_lost(both, spec, name)
     both["unit"] = [metrics.find_unit(metric, workspace_unit) for metric in both["metric"]]
-    described = pd.DataFrame(
-        [_compute_row(row, keys, name) for row in both.to_dict("records")], index=both.index
-    )
+    described = pd.DataFrame([_compute_row(row, keys, name) for row in both.to_dict("records")])
     table = both.join(described).reindex(columns=keys + COLUMNS_OF["comparison"] + PLACES)
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["wide"] = _find_wide(both.join(table[RANGE]), published, key_columns)
@@ -271,13 +269,12 @@ def _compute_row(row: dict[str, Any], keys: list[str], name: str) -> dict[str, A
         "high95_ours": high,
     }
     published, single = row["value_published"], (row["least"], row["most"])
-    decimals = row["decimals"]
     cell["possible"] = is_possible(row, size)
     if row["unit"] == "s":  # of another machine
         return cell | {"position": NO_RANGE}
     rng = generator(f"{row_name}/prediction")
     found = statistics.compute_prediction_interval(statistic, numbers, size, rng, single, within)
-    low, high = round_range(found, scaled, decimals)
+    low, high = round_range(found, scaled, row["decimals"])
     return cell | {
         "low95_predicted": low,
         "high95_predicted": high,

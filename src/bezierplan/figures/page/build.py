@@ -92,10 +92,10 @@ def render_page(page: SimpleNamespace, folder: Path) -> str:
 
     folder: where the pictures of its figures are.
     """
-    return build_environment(page, folder).get_template("page.html.jinja").render(page=page)
+    return build_environment(folder).get_template("page.html.jinja").render(page=page)
 
 
-def build_environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
+def build_environment(folder: Path, *more: Path) -> Any:
     """Return a `jinja2.Environment` with all that templates can use.
 
     Templates are those of this folder and of more folders. folder: where the pictures of figures

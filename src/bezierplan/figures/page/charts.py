@@ -70,9 +70,8 @@ def _add_strips(rows: list[Row]) -> None:
     """
     effects = _list_known(rows, "effect", "effect_published")
     most = 3 * max(map(abs, effects), default=0.0) or 1.0
-    ends = _list_known(rows, "low95", "high95")
     reach = _list_known(rows, "reference") + effects
-    reach += [min(max(end, -most), most) for end in ends]
+    reach += [min(max(end, -most), most) for end in _list_known(rows, "low95", "high95")]
     pad = 0.06 * (max(reach) - min(reach)) or 1.0
     low, high = min(reach) - pad, max(reach) + pad
 

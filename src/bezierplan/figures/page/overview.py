@@ -43,8 +43,11 @@ def select_claims_of_paper(study: SimpleNamespace) -> list[Row]:
 
 def select_failing(study: SimpleNamespace) -> list[Row]:
     """Return the claims of a paper that fail, also those that do by a criterion of ours."""
-    claims = select_claims_of_paper(study)
-    return [claim for claim in claims if legend.WORDS[claim["verdict"]].group == "fail"]
+    return [
+        claim
+        for claim in select_claims_of_paper(study)
+        if legend.WORDS[claim["verdict"]].group == "fail"
+    ]
 
 
 def select_counted(study: SimpleNamespace) -> list[Row]:

@@ -110,12 +110,10 @@ def _describe_families(of_problems: pd.DataFrame, labels: Labels) -> pd.DataFram
 
 def _describe_method(study: str, name: str, method: Any) -> Row:
     """Return a method, with the paragraphs on its planner."""
-    paragraphs = method.about.split("\n\n")
-    about = [" ".join(paragraph.replace("`", "").split()) for paragraph in paragraphs]
     return method._asdict() | {
         "name": name,
         "address": build_address(study, "method", name),
-        "about": about,
+        "about": [" ".join(each.replace("`", "").split()) for each in method.about.split("\n\n")],
     }
 
 
@@ -167,8 +165,8 @@ def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
     """Read a table in the paper's layout from its csv file, with the printed number beside ours in
     each cell.
 
-    head: names of its columns. rows: names of each, and its cells as (printed, ours, number), where
-    the number is None if nothing is published.
+    head: names of its columns. rows: names of each, and its cells as (ours, number), where the
+    number is None if nothing is published.
     """
     ours = pd.read_csv(file, dtype=str, keep_default_na=False)
     heads = len(spec.index)
@@ -176,8 +174,7 @@ def _lay_out_table(file: Path, spec: Pivot, numbers: list[Row]) -> Row:
     rows = []
     for row, texts in enumerate(ours.to_numpy().tolist()):
         cells = [(text, placed.get((row, n))) for n, text in enumerate(texts[heads:])]
-        both = [(cell["as_printed"] if cell else "", text, cell) for text, cell in cells]
-        rows.append((texts[:heads], both))
+        rows.append((texts[:heads], cells))
     return {"head": list(ours), "rows": rows, "note": spec.note}
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis import metrics
+from bezierplan.analysis import measures, metrics
 from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.groups import count_runs, describe_axis, find_published
@@ -221,7 +221,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
 
     if options.explicit is not None:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
-        start, target = path.points[list(curves.ends(path.curve))]
+        start, target = path.points[curves.ends(path.curve)]
         ends = {"start": [start], "target": [target]}
         return workspaces.list_points(ends | _list_points_by_part(path, options.control))
     if options.hue is not None:
@@ -277,7 +277,7 @@ def sample_path(path: Path) -> np.ndarray:
     """Return points (n, 2) along a path, close enough to look smooth."""
     pieces = len(curves.bezier_pieces(path))
     steps = pieces * max(1, _STEPS // pieces)
-    return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
+    return measures.sample_path(path, steps + 1)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

@@ -98,19 +98,6 @@ def _find_sides(index: int, cell: float, last: int) -> tuple[float, float]:
     return low, high
 
 
-@allocation_free
-def _count_blocked_elements(
-    counts: np.ndarray, bottom: int, top: int, left: int, right: int
-) -> int:
-    """Count the blocked elements in a range of the doubled grid, both ends inclusive."""
-    return (
-        counts[top + 1, right + 1]
-        - counts[bottom, right + 1]
-        - counts[top + 1, left]
-        + counts[bottom, left]
-    )
-
-
 def _is_blocked_in_grid(x, y, region):
     """Tell whether a point's element of the doubled grid is blocked."""
     rows, columns = region.blocked.shape
@@ -124,7 +111,7 @@ def _is_free_in_grid(points, region):
     axis.
     """
     rows, columns = region.blocked.shape
-    cell = region.cell
+    cell, counts = region.cell, region.counts
     x_low, x_high, y_low, y_high = bound_box(points)
     # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
     # seam, the second range extends as far beyond the hull as a hull may reach into a rectangle.
@@ -133,7 +120,11 @@ def _is_free_in_grid(points, region):
         right = _find_element(x_high + reach, cell, columns - 1)
         bottom = _find_element(y_low - reach, cell, rows - 1)
         top = _find_element(y_high + reach, cell, rows - 1)
-        if reach == 0.0 and not _count_blocked_elements(region.counts, bottom, top, left, right):
+        # As many blocked elements lie below and left of the range as with it: none is in it.
+        if reach == 0.0 and (
+            counts[top + 1, right + 1] - counts[bottom, right + 1]
+            == counts[top + 1, left] - counts[bottom, left]
+        ):
             return True
     # Halves of the hull span fewer elements, so this is no verdict.
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:

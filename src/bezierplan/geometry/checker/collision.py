@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry.checker.certificates import is_blocked, is_free
-from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, measure_size, split_top
+from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, halve, measure_size
 from bezierplan.geometry.region import Region
 from bezierplan.kernels import compile_kernel
 
@@ -47,6 +47,11 @@ def find_first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int
             elif measure_size(points) <= TOLERANCE:
                 top -= 1
             else:
-                split_top(stack, begin, width, top)
+                # The right half stays, and the left half is put on it.
+                halve(points, stack[top + 1])
+                width[top] *= 0.5
+                width[top + 1] = width[top]
+                begin[top + 1] = begin[top]
+                begin[top] += width[top]
                 top += 1
     return math.inf, intervals

@@ -17,6 +17,7 @@ from bezierplan.geometry.checker.certificates import (
 from bezierplan.geometry.checker.hulls import (
     STACK,
     choose_resolution,
+    compute_doubled_area,
     copy_points,
     halve,
     measure_bulge,
@@ -213,8 +214,8 @@ def _measure_distance_of_segments(
 ) -> float:
     """Return the distance of two segments, 0 if they cross."""
     if (
-        _compute_doubled_area(a, b, c) * _compute_doubled_area(a, b, d) < 0.0
-        and _compute_doubled_area(c, d, a) * _compute_doubled_area(c, d, b) < 0.0
+        compute_doubled_area(a, b, c) * compute_doubled_area(a, b, d) < 0.0
+        and compute_doubled_area(c, d, a) * compute_doubled_area(c, d, b) < 0.0
     ):
         return 0.0
     (ax, ay), (bx, by), (cx, cy), (dx, dy) = a, b, c, d
@@ -224,9 +225,3 @@ def _measure_distance_of_segments(
         measure_distance_to_segment(cx, cy, ax, ay, bx, by),
         measure_distance_to_segment(dx, dy, ax, ay, bx, by),
     )
-
-
-@allocation_free
-def _compute_doubled_area(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
-    """Return twice the signed area of a triangle, positive if it is counterclockwise."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -55,26 +55,15 @@ def halve(points: np.ndarray, left: np.ndarray) -> None:
 
 
 @allocation_free
-def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int) -> None:
-    """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left
-    half is put on it.
-
-    All arguments but `top` are changed.
-
-    stack: (`STACK`, n, 2) control points of the parts.
-    begin, width: (`STACK`,) the parameter interval of each part.
-    """
-    halve(stack[top], stack[top + 1])
-    width[top] *= 0.5
-    width[top + 1] = width[top]
-    begin[top + 1] = begin[top]
-    begin[top] += width[top]
-
-
-@allocation_free
 def measure_distance(point: np.ndarray, other: np.ndarray) -> float:
     """Return the distance of two points (2,)."""
     return math.hypot(other[0] - point[0], other[1] - point[1])
+
+
+@allocation_free
+def compute_doubled_area(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+    """Return twice the signed area of a triangle, positive if it is counterclockwise."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 @allocation_free

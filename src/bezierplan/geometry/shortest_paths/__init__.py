@@ -52,7 +52,7 @@ def shortest_path(problem: Problem) -> Bound:
     [[0.5, 0.5], [3.0, 1.0], [3.5, 2.5]]
     """
     blocked = build_region(problem.workspace)
-    for point in (problem.start, problem.target):
+    for point in problem.ends:
         # The check itself judges a path that stays at the point, so both allow the same places.
         if not check(np.array([[point, point]]), blocked).feasible:
             return no_path()
@@ -84,6 +84,6 @@ def least_length(bound: Bound) -> float:
     below 1e-7 can allow more.
     """
     step = np.diff(bound.points, axis=0)
-    step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]
+    step = step[np.hypot(*step.T) > TOLERANCE]
     heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
     return bound.length * (1 - 1e-9) - 1e-8 * float(np.abs(np.diff(heading)).sum())

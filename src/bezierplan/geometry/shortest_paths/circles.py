@@ -88,7 +88,7 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
     """
     outer = _is_outer(blocked.centres, blocked.radii)
     scene = _Scene(
-        np.concatenate([[problem.start, problem.target], blocked.centres[outer]]),
+        np.concatenate([problem.ends, blocked.centres[outer]]),
         np.concatenate([np.zeros(2), blocked.radii[outer]]),
         blocked.bounds,
     )
@@ -348,7 +348,7 @@ def _find_covered_angles(k: int, scene: _Scene) -> tuple[np.ndarray, np.ndarray]
     radius = radii[k]
     others = np.delete(np.arange(2, len(radii)), k - 2)
     step, other = centres[others] - centres[k], radii[others]
-    distance = np.hypot(step[:, 0], step[:, 1])
+    distance = np.hypot(*step.T)
     meets = distance < radius + other - TOLERANCE
     step, other, distance = step[meets], other[meets], distance[meets]
     cosine = (distance**2 + radius**2 - other**2) / (2 * distance * radius)

@@ -43,7 +43,7 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes = _list_grid_corners(cells)
-    ends = from_origin(np.array([problem.start, problem.target], float), blocked)
+    ends = from_origin(problem.ends, blocked)
     scale = _choose_lattice(
         ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape))
     )
@@ -51,9 +51,7 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     # Without this test a search would look around at each corner that the start can reach.
     if not _is_joined(cells, lattice[0], lattice[1], scale):
         return no_path()
-    direct = bool((lattice[0] == lattice[1]).all()) or _is_visible(
-        lattice[0], lattice[1], cells, scale
-    )
+    direct = _is_visible(lattice[0], lattice[1], cells, scale)
     nodes = shadows.search(
         shadows.build_scene(cells, corners, slopes, scale),
         lattice,
@@ -92,15 +90,11 @@ def _find_centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tupl
 
     Raises ValueError for any other point.
     """
+    cell = grid.cell_of(*point)
     column, row = grid.in_cells(np.array(point)) - 0.5
-    rows, columns = grid.occupied.shape
-    is_centre = (
-        abs(column - round(column)) <= _CENTRE_TOLERANCE
-        and abs(row - round(row)) <= _CENTRE_TOLERANCE
-    )
-    if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
+    if cell is None or not np.allclose((row, column), cell, rtol=0, atol=_CENTRE_TOLERANCE):
         raise ValueError(f"the {name} {point} is not the centre of a cell")
-    return round(row), round(column)
+    return cell
 
 
 def _list_grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -160,14 +154,13 @@ def _find_visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
     visible = np.zeros((len(nodes), len(nodes)), np.bool_)
     for i in range(len(nodes)):
         for j in range(i + 1, len(nodes)):
-            same = nodes[i, 0] == nodes[j, 0] and nodes[i, 1] == nodes[j, 1]
-            visible[i, j] = same or _is_visible(nodes[i], nodes[j], cells, 2)
+            visible[i, j] = _is_visible(nodes[i], nodes[j], cells, 2)
     return visible
 
 
 @allocation_free
 def _is_visible(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
-    """Tell whether the segment between two different points of the lattice is free."""
+    """Tell whether the segment between two free points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
         return _is_visible_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale)

@@ -7,7 +7,7 @@ import numpy as np
 
 from bezierplan.geometry.bins import Bins, columns_between, list_members, rows_between
 from bezierplan.geometry.checker import TOLERANCE, find_first_collision
-from bezierplan.geometry.checker.hulls import measure_distance
+from bezierplan.geometry.checker.hulls import compute_doubled_area, measure_distance
 from bezierplan.geometry.region import PolygonRegion
 from bezierplan.geometry.shortest_paths.graph import Bound, follow_nodes
 from bezierplan.kernels import allocation_free, compile_kernel
@@ -23,7 +23,7 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     corner = np.flatnonzero(blocked.convex)
     repeated, count = np.unique(begin, axis=0, return_counts=True)
     # Where corners meet, a path may pass between them and turn either way.
-    anywhere = np.concatenate([[problem.start, problem.target], repeated[count > 1]])
+    anywhere = np.concatenate([problem.ends, repeated[count > 1]])
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
@@ -152,6 +152,4 @@ def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
     It is 0 if a equals b.
     """
     length = measure_distance(a, b)
-    if length == 0.0:
-        return 0.0
-    return ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / length
+    return 0.0 if length == 0.0 else compute_doubled_area(a, b, point) / length

@@ -92,9 +92,8 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
             if i
             else _look_around(at[0], scene, fans, view)
         )
-        for k in range(-1, count):
-            if k < 0 and not sees_target[i]:
-                continue
+        # The target comes first, if it is seen.
+        for k in range(-1 if sees_target[i] else 0, count):
             j = 1 if k < 0 else view[k] + 2
             so_far = length[i] + math.sqrt(
                 (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2

@@ -5,16 +5,13 @@ Numbers of equations, sections, tables and figures are the paper's.
 
 import itertools
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit import rules
 from bezierplan.analysis.audit.rows import build_audit_row, compare_with_limit
-
-if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Published
 
 # The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as
 # best.
@@ -25,7 +22,7 @@ SIGN = {"highest": 1, "lowest": -1}
 RANKED = {"optimal": "optima", "objective": "mean fitness", "cpu_s": "mean solution time"}
 
 
-def audit(published: "Published") -> list[dict]:
+def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """List numbers in Tables 2 to 5 that contradict others.
 
     The three counts of a row add up to the trials. The sentences of Section 4 about the proposed

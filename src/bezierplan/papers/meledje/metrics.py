@@ -1,7 +1,5 @@
 """Metrics of meledje alone."""
 
-from __future__ import annotations
-
 from bezierplan.analysis.measures import extend_histories
 from bezierplan.analysis.metric import Metric, build_count, register
 

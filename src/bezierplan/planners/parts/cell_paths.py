@@ -9,11 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_inline, compile_kernel
-from bezierplan.planners import Plan
+from bezierplan.planners import Path, Plan, Problem
 from bezierplan.planners.parts.genetic import draw_parents
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.workspaces.lattice import Corners, Lattice, build_grid_lattice, list_points
-from bezierplan.workspaces.problem import Path, Problem
 
 ONE_CELL, RECONNECT, WALK = range(3)
 

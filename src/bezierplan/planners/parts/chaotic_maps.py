@@ -17,7 +17,6 @@ from bezierplan.kernels import allocation_free, compile_kernel
 Map = IntEnum(
     "Map",
     "gauss singer tent circle logistic sine piecewise sinusoidal gauss_printed constant",
-    start=0,
 )
 MAPS = tuple(Map.__members__)
 
@@ -91,7 +90,7 @@ def _get_number(name: str) -> int:
     """Return the number of a map; raises ValueError for an unknown one."""
     if name not in MAPS:
         raise ValueError(f"unknown chaotic map {name!r}; known: {', '.join(MAPS)}")
-    return MAPS.index(name)
+    return Map[name].value
 
 
 @compile_kernel

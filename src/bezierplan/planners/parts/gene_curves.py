@@ -15,6 +15,7 @@ from bezierplan.geometry.cell_length import (
     count_occupied_cells,
     count_parts,
     cut,
+    find_cell_at,
     sum_of_steps,
     write_samples,
     write_touched_cells,
@@ -34,7 +35,7 @@ _ON_LINE = 1e-9
 # A sum of lengths is exact to this share.
 _ROUNDING = 1e-9
 
-CurveKind = IntEnum("CurveKind", "single chain", start=0)
+CurveKind = IntEnum("CurveKind", "single chain")
 _FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
@@ -276,9 +277,8 @@ def _count_free_samples(x, y, room):
     It is 0 if the sample's cell is occupied, -1 if that cannot be told: a sample on a grid line may
     count to the cell on either side.
     """
-    rows, columns = room.shape
     # There is no cell beyond the upper and right borders, on which start and target may lie.
-    column, row = min(int(x), columns - 1), min(int(y), rows - 1)
+    column, row = find_cell_at(x, y, room)
     right, above = x - column, y - row
     if _ON_LINE < right < 1.0 - _ON_LINE and _ON_LINE < above < 1.0 - _ON_LINE:
         return room[row, column]
@@ -291,8 +291,7 @@ def _can_cut_corner(x0, y0, x, y, room):
 
     The second sample is within a free cell.
     """
-    rows, columns = room.shape
-    before_column, before_row = min(int(x0), columns - 1), min(int(y0), rows - 1)
+    before_column, before_row = find_cell_at(x0, y0, room)
     if room[before_row, before_column] > 1:
         return False
     return (

@@ -19,7 +19,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons, list_rings_of_polygon, list_sides
 from bezierplan.workspaces.problem import Workspace
 
-Penalty = IntEnum("Penalty", "multiply add death", start=0)
+Penalty = IntEnum("Penalty", "multiply add death")
 
 # A path is feasible if its violation does not exceed this: a converging swarm ends tangent to a
 # circle, a rounding error deep.
@@ -68,9 +68,7 @@ def compute_basis(curve: str, control_points: int, samples: int) -> tuple[np.nda
     """
     weights = curves.sample_matrix(curve, control_points + 2, samples).T
     # A copy, since numba would compile all kernels once more for an array that is read-only.
-    return weights[list(curves.ends(curve))], weights[
-        find_free_points(curve, control_points)
-    ].copy()
+    return weights[curves.ends(curve)], weights[find_free_points(curve, control_points)].copy()
 
 
 @cache

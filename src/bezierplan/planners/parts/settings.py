@@ -133,7 +133,7 @@ def find_setting_fault(declaration: Setting, value: Any) -> str | None:
         isinstance(value, bool) and declaration.kind is not bool
     ):
         return str(declaration._replace(limits=Range()))
-    if declaration.kind is bool or declaration.limits.low <= value <= declaration.limits.high:
+    if declaration.limits.low <= value <= declaration.limits.high:
         return None
     return (
         str(declaration)
@@ -194,16 +194,17 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
     classes: types of its arguments `settings`, in their order.
     """
 
-    # A name that no class has is left to the first, which refuses it.
-    place = {name: k for k, each in enumerate(classes) for name in each._fields}
-
     def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(plan)
         def call_by_name(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
-            parts: list[dict[str, Any]] = [{} for _ in classes]
-            for name, value in values.items():
-                parts[place.get(name, 0)][name] = value
-            return plan(problem, rng, *map(fill_settings, classes, parts), *further)
+            filled = [
+                fill_settings(
+                    each, {name: values.pop(name) for name in each._fields if name in values}
+                )
+                for each in classes
+            ]
+            # What is left has a name that no class has, which `plan` refuses.
+            return plan(problem, rng, *filled, *further, **values)
 
         # What asks for arguments or help sees the settings by name, too.
         signature = inspect.signature(plan)

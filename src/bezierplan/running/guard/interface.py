@@ -167,13 +167,13 @@ def check_settings(module: ModuleType, settings: Settings, location: str) -> Non
     right types and ranges, and satisfy the planner's own `check`. Other names are ignored.
     """
     declared = read_settings(module)
-    missing = {name: each for name, each in declared.items() if name not in settings}
+    missing = [
+        ", ".join(filter(None, [f"{name}: {each}", each.meaning]))
+        for name, each in declared.items()
+        if name not in settings
+    ]
     if missing:
-        explained = [
-            ", ".join(filter(None, [f"{name}: {each}", each.meaning]))
-            for name, each in missing.items()
-        ]
-        raise Fault(f"{location} are missing: {'; '.join(explained)}")
+        raise Fault(f"{location} are missing: {'; '.join(missing)}")
     for name, each in declared.items():
         if wanted := find_setting_fault(each, settings[name]):
             raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")

@@ -94,10 +94,8 @@ def find_blocked_length(grid: Grid, way: Way, s: float) -> float:
     """
     points, _ = ways.cut(*way, s, way.length)
     collision_at = ways.find_first_collision(points, build_region(grid))
-    if math.isinf(collision_at):
-        return math.inf
     lengths = s + ways.measure_lengths(points)
-    return float(np.interp(collision_at, np.arange(len(lengths)), lengths))
+    return float(np.interp(collision_at, np.arange(len(lengths)), lengths, right=math.inf))
 
 
 def find_way_out(grid: Grid, way: Way) -> float:
@@ -122,7 +120,7 @@ def _find_crossings(begin: float, end: float) -> np.ndarray:
     to the other, in cells.
     """
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
-    return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
+    return (lines - begin) / (end - begin)
 
 
 # A robot drives back in parts of this length, in units.

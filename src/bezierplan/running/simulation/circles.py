@@ -33,11 +33,13 @@ class _Rules(NamedTuple):
     horizon: float
 
 
-def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[int, np.ndarray]:
-    """Follow a newly planned way from a step on.
+def follow(
+    world: MovingCircles, way: Way, time: float, policy: Policy
+) -> tuple[int, np.ndarray, np.ndarray]:
+    """Follow a newly planned way from a step on, given as its time.
 
-    Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the
-    last one may be reached before its step.
+    Returns why it ends, the times (steps + 1,) of this and every following step, and the lengths of
+    way at them; the last one may be reached before its step.
     """
     # A circle that moves changes the world at every step. Touching is allowed.
     changes = policy.replan == "when_changed" and bool(world.velocities.any())
@@ -53,7 +55,10 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
         horizon=float(policy.horizon),
     )
     circles = (world.centres, world.velocities, np.array(world.walls, dtype=float), world.radii)
-    return _follow(way.points, way.at, step, circles, float(world.pace), world.end, rules)
+    event, reached = _follow(
+        way.points, way.at, round(time), circles, float(world.pace), world.end, rules
+    )
+    return event, time + np.arange(len(reached)), reached
 
 
 @compile_kernel

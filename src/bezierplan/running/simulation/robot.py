@@ -98,7 +98,8 @@ class _Log:
 def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> Ride:
     """Drive from start to target, until the robot arrives or the world's time is over."""
     log, plans, state = _Log(problem.start), [], None
-    time = 0.0
+    time, changing = 0.0, isinstance(world, ChangingCells)
+    follow = cells.follow if changing else circles.follow
     while time < world.end:
         made, along, state = _plan(
             world, problem, policy, planner, log, time, state if policy.warm else None
@@ -106,14 +107,13 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
         plans.append(made)
         event = STOPPED
         if along is not None:
-            event, times, reached = _follow(world, along, time, policy)
+            event, times, reached = follow(world, along, time, policy)
             log.follow(along, times, reached, world.pace)
             time = float(times[-1])
         if event == ARRIVED:
             return Ride(log.motion(), True, log.waited, plans)
         if event == STOPPED:
             place = log.points[-1][-1]
-            changing = isinstance(world, ChangingCells)
             aside = place
             if policy.evades and not changing:
                 aside = find_refuge(world, place, round(time), policy)
@@ -125,18 +125,6 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
             else:
                 log.drive(aside, time)
     return Ride(log.motion(), False, log.waited, plans)
-
-
-def _follow(
-    world: World, along: Way, time: float, policy: Policy
-) -> tuple[int, np.ndarray, np.ndarray]:
-    """Follow a way as the world's kind needs it; return why it ends, times, and lengths reached at
-    them.
-    """
-    if isinstance(world, ChangingCells):
-        return cells.follow(world, along, time, policy)
-    event, reached = circles.follow(world, along, round(time), policy)
-    return event, time + np.arange(len(reached)), reached
 
 
 def _plan(

@@ -64,7 +64,7 @@ def build_polyline(path: Path, spacing: float) -> np.ndarray:
     samples = pieces * max(2, math.ceil(legs / spacing / pieces)) + 1
     points = curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
     # Sums round; a way begins and ends exactly at the path's own points.
-    points[[0, -1]] = path.points[list(curves.ends(path.curve))]
+    points[[0, -1]] = path.points[curves.ends(path.curve)]
     return points
 
 

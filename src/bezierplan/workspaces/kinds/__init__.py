@@ -126,7 +126,7 @@ class Workspace(Model):
 class World(Workspace):
     """Keys common to all worlds, in which obstacles move or cells change."""
 
-    moves: ClassVar[bool] = True
+    moves = True
 
     pace: Positive = Field(
         description="how far a robot drives in a step, in units, a number above 0"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -40,7 +40,7 @@ class Change(Model):
 class Options(World):
     """Keys of a workspace of kind `changing_cells`."""
 
-    given_kind: ClassVar[str] = "grid"
+    given_kind = "grid"
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")

@@ -1,7 +1,6 @@
 """An image, whose pixels are cells."""
 
 from pathlib import Path
-from typing import ClassVar
 
 from pydantic import Field
 
@@ -13,7 +12,7 @@ from bezierplan.workspaces.kinds import UNKNOWN, File, Size, Workspace, naming
 class Options(Workspace):
     """Keys of a workspace of kind `image`."""
 
-    given_kind: ClassVar[str] = "grid"
+    given_kind = "grid"
 
     file: File = Field(description="an image in the study's folder; dark pixels are occupied")
     resolution: Size = Field(description="the side of a pixel, a number of at least 1e-6")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -21,7 +21,7 @@ MovingCircle = Annotated[list[Number], of_length(5, "[x, y, radius, x velocity, 
 class Options(World):
     """Keys of a workspace of kind `moving_circles`."""
 
-    given_kind: ClassVar[str] = "circles"
+    given_kind = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
     circles: list[MovingCircle] = Field(

@@ -2,7 +2,7 @@
 all methods and experiments.
 """
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -29,7 +29,7 @@ def _is_radius(entry: Any) -> bool:
 class Options(Workspace):
     """Keys of a workspace of kind `random_circles`."""
 
-    drawn_kind: ClassVar[str] = "circles"
+    drawn_kind = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
     radius: Annotated[Any, build_value_type(_is_radius, RADIUS)] = Field(description=RADIUS)

@@ -1,7 +1,7 @@
 """Cells rasterized from polygons."""
 
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -14,7 +14,7 @@ from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, p
 class Options(Workspace):
     """Keys of a workspace of kind `raster`."""
 
-    given_kind: ClassVar[str] = "grid"
+    given_kind = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
     margin: NotNegative | None = Field(None, description=MARGIN)

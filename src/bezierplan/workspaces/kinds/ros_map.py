@@ -1,7 +1,6 @@
 """An image with the YAML file of ROS's map_server."""
 
 from pathlib import Path
-from typing import ClassVar
 
 from pydantic import Field
 
@@ -13,7 +12,7 @@ from bezierplan.workspaces.kinds import UNKNOWN, File, Workspace, naming
 class Options(Workspace):
     """Keys of a workspace of kind `ros_map`."""
 
-    given_kind: ClassVar[str] = "grid"
+    given_kind = "grid"
 
     file: File = Field(description="the YAML file of a map_server map in the study's folder")
     unknown: ros.Unknown = Field("occupied", description=UNKNOWN)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
@@ -19,7 +19,7 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.check import WithMargin, Work
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compute_p_of_signed_ranks
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
+from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import NumberColumn
 from bezierplan.workspaces.seeds import generator
 
@@ -32,7 +32,7 @@ _DIGITS = 12
 
 
 class Options(WithMargin):
-    cells_key: ClassVar[str | None] = "x"
+    cells_key = "x"
 
     x: NumberColumn = Field(description="a column of numbers along which the metric changes")
     direction: Literal["up", "down"] = Field(description="up or down")
@@ -75,16 +75,13 @@ class Options(WithMargin):
             reference = ours[0] if self.relative else 1.0
             changes = slopes * np.ptp(x) / (reference or math.nan)
             change = float(changes.mean())
-            if n > MOST_RESAMPLED:
-                draws = statistics.compute_normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
-            else:
-                draws = statistics.resample("mean", changes, n, generator(name))
+            low, high = statistics.compute_interval("mean", changes, generator(name))
             p = compute_p_of_signed_ranks(slopes)
         else:
             change = float(self.compute_effect(ours, comparison.cells))
             draws = effects.draw_effects(self, comparison, name)
+            low, high = effects.compute_interval_of_draws(draws)
             p = effects.compute_p(draws)
-        low, high = effects.compute_interval_of_draws(draws)
         margin = effects.compute_margin(self, comparison)
         toward = int(np.sign(self.side * np.nan_to_num(change)))
         toward = 0 if abs(change) < margin else toward

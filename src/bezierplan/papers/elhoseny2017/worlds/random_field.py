@@ -1,6 +1,6 @@
 """Fields of cells with circles at random places."""
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -12,8 +12,8 @@ from bezierplan.workspaces.kinds import Workspace
 class Options(Workspace):
     """Keys of a workspace."""
 
-    drawn_kind: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
+    drawn_kind = "grid"
+    with_side = True
 
     radius: Positive = Field(
         description="the radius of every circle as a share of the field's side, a number above 0"

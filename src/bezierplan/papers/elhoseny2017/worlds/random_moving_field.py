@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class Options(RandomMoving):
     """Keys of a workspace."""
 
-    drawn_kind: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
+    drawn_kind = "grid"
+    with_side = True
 
     radius: Positive = Field(
         description="the radius of every circle as a share of the field's side, a number above 0"

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cache
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -26,8 +26,8 @@ _SAME_LENGTH = 1e-4
 class Options(Workspace):
     """Keys of a workspace."""
 
-    drawn_kind: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
+    drawn_kind = "grid"
+    with_side = True
 
     largest_block: Count = Field(
         description="the most cells of a block's side, a whole number of at least 1"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -24,7 +24,7 @@ _MOST_CHANGES = 1000
 class Options(World):
     """Keys of a workspace."""
 
-    drawn_kind: ClassVar[str] = "grid"
+    drawn_kind = "grid"
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Options(RandomMoving):
     """Keys of a workspace."""
 
-    drawn_kind: ClassVar[str] = "circles"
+    drawn_kind = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
     radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
