@@ -10,9 +10,9 @@ import content  # noqa: E402
 
 import bezierplan  # noqa: E402
 from bezierplan.figures.page import build  # noqa: E402
+from bezierplan.schema import checked  # noqa: E402
 
 project = "bezierplan"
-author = copyright = "The bezierplan authors"
 version = release = bezierplan.__version__
 
 extensions = [
@@ -21,7 +21,6 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.doctest",
     "sphinx.ext.viewcode",
 ]
 exclude_patterns = ["outcome/*.md", "prose", "python.md", "verdict-changes.md", "*.in.md"]
@@ -30,27 +29,21 @@ myst_enable_extensions = ["dollarmath", "deflist", "colon_fence", "attrs_inline"
 myst_heading_anchors = 3
 
 numpydoc_show_class_members = False
-autosummary_generate = True
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
-nitpicky = False
 
 html_theme = "pydata_sphinx_theme"
 html_title = "bezierplan"
 html_theme_options = {
-    "show_nav_level": 1,
-    "navigation_with_keys": False,
     "show_prev_next": False,
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["made"],
     "footer_end": [],
-    "pygments_light_style": "a11y-high-contrast-light",
-    "pygments_dark_style": "a11y-high-contrast-dark",
 }
 html_context = {
     "default_mode": "auto",
     "made_by": build.describe_version(),
-    "licence": content.list_citations()[0]["license"],
+    "licence": checked.read(content.CITATION)["license"],
 }
 templates_path = ["templates"]
 # Pages without pages below them.

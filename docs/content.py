@@ -2,21 +2,19 @@
 the numbers, verdicts and reasons of many runs that docs/outcome keeps.
 """
 
-import contextlib
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import outcome
-import yaml
 
-from bezierplan.analysis import study_code
+from bezierplan.analysis import naming, study_code
 from bezierplan.commands import read_studies
 from bezierplan.figures.page import EVIDENCE, build, reader
 from bezierplan.schema.checked import Fault
 from bezierplan.study import page as page_jobs
 
 ROOT = Path(__file__).parents[1]
+CITATION = ROOT / "CITATION.cff"
 SCALES = ("extended", "full", "smoke")
 PICTURES = {
     "song2016": "figure3",
@@ -28,85 +26,38 @@ PICTURES = {
 """The figure of each paper that shows what it is about; of another study, its first."""
 
 
-def find_results() -> tuple[str, Path]:
-    """Find the scale with the most runs that there is, and its folder of results. Raises Fault."""
+def find_results() -> Path:
+    """Find the results of the scale with the most runs that there is. Raises Fault."""
     for scale in SCALES:
-        if (ROOT / "results" / scale / "index.html").is_file():
-            return scale, ROOT / "results" / scale
+        folder = ROOT / "results" / scale
+        if (folder / "index.html").is_file():
+            return folder
     raise Fault("no results to show: `snakemake smoke` or `make reproduce` makes them")
 
 
-def read_content() -> tuple[SimpleNamespace, Path]:
-    """Read the content of the page of results, and return it with the folder of its results.
+def read_content() -> SimpleNamespace:
+    """Read the content of the page of results.
 
     Each study also gets its name, as people search for it; definition; and picture, one of its
     figures. Raises Fault.
     """
-    scale, folder = find_results()
-    with contextlib.chdir(ROOT):
-        studies = read_studies()
-        whole = page_jobs.build_page(studies, scale)
-        study_code.load_functions(whole.code)  # what a study's metrics mean
-        page = build.gather_content(
-            whole.page._replace(outcome=[*studies]),
-            folder,
-            [str(folder / name) for name in outcome.TABLES],
-            evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
-        )
+    folder = find_results()
+    studies = read_studies()
+    whole = page_jobs.build_page(studies, folder.name, f"{folder.parent}/")
+    study_code.load_functions(whole.code)  # what a study's metrics mean
+    page = build.gather_content(
+        whole.page._replace(outcome=[*studies]),
+        folder,
+        [str(folder / name) for name in outcome.TABLES],
+        evidence=reader.Evidence(*map(reader.read, EVIDENCE)),
+    )
     for key, study in page.studies.items():
-        study.name, study.definition = outcome.format_name(key), studies[key]
+        study.name, study.definition = naming.format_heading(key), studies[key]
         of_name = {figure["name"]: figure for figure in study.figures}
         study.picture = of_name.get(PICTURES.get(key), study.figures[0])
-    return page, folder
+    return page
 
 
 def read_prose(key: str) -> str:
     """Read the text on a paper or planner that is written by hand."""
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
-
-
-# --------------------------------------------------------------------------------------------------
-# Citations
-
-
-def list_citations() -> list[dict[str, Any]]:
-    """List this software, then the papers, as CITATION.cff has them.
-
-    Added keys: key; names, of the authors; where, journal, version and year; doi, maybe none;
-    bibtex.
-    """
-    content = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    year = content["date-released"].year
-    first = content | {"notes": "bezierplan", "year": year, "type": "software"}
-    return [
-        {"doi": None}
-        | entry
-        | {
-            "key": entry["notes"],
-            "names": format_authors(entry, ", "),
-            "where": "".join(
-                f", {entry[name]}" for name in ("journal", "version", "year") if name in entry
-            ),
-            "bibtex": format_bibtex(entry),
-        }
-        for entry in (first, *content["references"])
-    ]
-
-
-def format_authors(entry: dict[str, Any], between: str) -> str:
-    """Return the names of the authors of an entry of CITATION.cff, with a text between them."""
-    return between.join(
-        each.get("name") or f"{each['given-names']} {each['family-names']}"
-        for each in entry["authors"]
-    )
-
-
-def format_bibtex(entry: dict[str, Any]) -> str:
-    """Return an entry of CITATION.cff for BibTeX."""
-    kind = {"article": "article" if "journal" in entry else "unpublished"}
-    authors = format_authors(entry, " and ")
-    fields = {"author": f"{{{authors}}}" if entry["type"] == "software" else authors}
-    fields |= {name: entry.get(name) for name in ("title", "journal", "year", "version", "doi")}
-    fields["url"] = entry.get("repository-code")
-    lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
-    return "\n".join([f"@{kind.get(entry['type'], 'misc')}{{{entry['notes']},", *lines, "}"])

@@ -107,13 +107,12 @@ def _compare_readings(fact: texts.Fact, rows: pd.DataFrame, by_reading: pd.DataF
 def _show(fact: texts.Fact, values: pd.Series, true: pd.Series) -> dict[str, str]:
     """Format the values of a fact for a text: by name, such as `low` or `rows`."""
     shown = {"holds": str(true.sum()), "rows": str(len(values))}
-    if len(values) == 1:
-        shown["value"] = str(values.iloc[0])
     if len(values) and pd.api.types.is_numeric_dtype(values):
         numbers = values.astype(float) * (100 if fact.percent else 1)
-        ends = {"low": numbers.min(), "high": numbers.max()}
-        shown |= {name: naming.format_number(end, fact.digits) for name, end in ends.items()}
-        shown |= {"value": shown["low"]} if len(values) == 1 else {}
+        for name, end in (("low", numbers.min()), ("high", numbers.max())):
+            shown[name] = naming.format_number(end, fact.digits)
+    if len(values) == 1:
+        shown["value"] = shown.get("low", str(values.iloc[0]))
     return shown
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import re
 import shutil
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Collection
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,13 +27,14 @@ from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.places import OUTCOME
 from bezierplan.planners import list_planners, load_planner, read_settings
+from bezierplan.schema import checked
 from bezierplan.study.alternatives import describe_values
 
 HERE = Path(__file__).parent
 MOST_NAMED = 4
 """Methods named beside a value; of more, their number."""
-RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json")
-"""Files of results that the site holds: what the page of results links to."""
+BEHIND = ("alternatives", "logs", "problems", "readings", "runs", "*.log", "*.png", "*.txt")
+"""Results that the site does not hold: the page of results has no link to them."""
 
 
 def setup(app: Any) -> dict[str, bool]:
@@ -41,11 +42,10 @@ def setup(app: Any) -> dict[str, bool]:
     app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
     app.connect("build-finished", lambda app, fault: fault or copy_results(Path(app.outdir)))
     # MathML, which browsers draw by themselves.
-    inline, block = (
-        partial(write_formula, "{}"),
-        '<div class="equation" tabindex="0" role="group">{}</div>',
+    block = '<div class="equation" tabindex="0" role="group">{}</div>'
+    app.add_html_math_renderer(
+        "mathml", (partial(write_formula, "{}"), None), (partial(write_formula, block), None)
     )
-    app.add_html_math_renderer("mathml", (inline, None), (partial(write_formula, block), None))
     return {"parallel_read_safe": True}
 
 
@@ -58,39 +58,30 @@ def write_formula(around: str, writer: Any, node: Any) -> None:
 
 def copy_results(site: Path) -> None:
     """Copy the page of results into the site, with the files that it links to."""
-    _, folder = content.find_results()
-    shutil.rmtree(site / "results", ignore_errors=True)
-    for depth in ("", "*/", "*/*/"):
-        for file in (file for pattern in RESULTS for file in folder.glob(depth + pattern)):
-            place = site / "results" / file.relative_to(folder)
-            place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(file, place)
+    away = site / "results"
+    shutil.rmtree(away, ignore_errors=True)
+    shutil.copytree(content.find_results(), away, ignore=shutil.ignore_patterns(*BEHIND))
 
 
 def write(folder: Path) -> None:
     """Write all generated pages below a folder."""
-    page, results = content.read_content()
-    environment = build.build_environment(page, results, HERE / "templates", HERE)
-    environment.filters |= {
-        "as_row": lambda found: [found[0].name, *found[1]],
-        "cell": escape_cell,
-        "words": describe_setting,
-        "name": outcome.format_name,
-    }
+    page = content.read_content()
+    environment = build.build_environment(content.find_results(), HERE / "templates", HERE)
+    environment.filters |= {"cell": outcome.escape_cell, "words": describe_setting}
     planners = {name: describe_planner(name, page.studies, folder) for name in list_planners()}
     environment.globals |= {
         "page": page,
         "papers": page.studies,
         "planners": planners,
-        "references": {entry["key"]: entry for entry in content.list_citations()},
+        "software": checked.read(content.CITATION),
         "numbers": reader.list_rows(pd.read_csv(OUTCOME / "numbers.csv")),
-        "names": [(heading, [*rows]) for heading, rows in names.list_things([], [*names.NAMES])],
+        "names": [*names.list_things((), names.NAMES)],
         "meaning": describe_values,
         "methods_by_family": outcome.build_methods_table(
             pd.read_csv(OUTCOME / "methods.csv"),
-            {key: study.job.labels for key, study in page.studies.items()},
+            {key: study.job for key, study in page.studies.items()},
         ),
-        "table": format_table,
+        "value_of": describe_value,
         "about": content.read_prose,
         "page_of": read_page,
         "origin_of_maps": read_origin_of_maps,
@@ -106,22 +97,9 @@ def write(folder: Path) -> None:
         **{file.name.replace(".in", ""): (file.name, {}) for file in HERE.glob("*.in.md")},
     }
     for name, (template, values) in pages.items():
-        text, file = environment.get_template(template).render(values), folder / name
+        file = folder / name
         file.parent.mkdir(exist_ok=True)
-        if not file.is_file() or file.read_text(encoding="utf-8") != text:
-            file.write_text(text, encoding="utf-8")
-
-
-def format_table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
-    """Return a table in Markdown from its heads and rows."""
-    lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-    lines += ["| " + " | ".join(escape_cell(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
-
-
-def escape_cell(value: Any) -> str:
-    """Return a value as the text of a cell, in which a bar would end it."""
-    return " ".join(str(value).replace("|", "\\|").split())
+        file.write_text(environment.get_template(template).render(values), encoding="utf-8")
 
 
 def describe_setting(value: Any) -> str:
@@ -137,14 +115,6 @@ def describe_setting(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return "none" if value is None else str(value).replace("_", " ")
-
-
-def select_rows(study: SimpleNamespace, methods: set[str]) -> list[Any]:
-    """Return the rows of some methods in the table of a study's methods, the label first."""
-    if study.families is None:
-        return []
-    labels = {study.job.labels.get(name, name) for name in methods}
-    return [row for row in study.families.itertuples() if row[0] in labels]
 
 
 def read_page(key: str) -> str:
@@ -176,23 +146,16 @@ def describe_planner(
 ) -> SimpleNamespace:
     """Return the content of the page of a planner, and draw one of its runs below a folder.
 
-    users: study -> its methods. algorithms: the studies whose plain Python it is. settings: rows.
-    open, achieved, resting: entries of assumptions, rows of the table of methods, and claims, each
-    with its study.
+    users: studies with their methods. papers: those whose proposed method it is. open, achieved,
+    resting: entries of assumptions, rows of the table of methods, and claims, each with its study.
     """
     module, text = load_planner(name), content.read_prose(name)
-    accepted = read_settings(module)
-    users = {key: methods for key, study in studies.items() if (methods := list_users(study, name))}
-
-    def collect(rows: Callable[[SimpleNamespace, set[str]], Iterable[Any]]) -> list[Any]:
-        found = ((studies[key], rows(studies[key], set(users[key]))) for key in users)
-        return [(study, row) for study, some in found for row in some]
-
+    settings = read_settings(module)
+    users = [(study, own) for study in studies.values() if (own := list_users(study, name))]
+    papers = [each for each in users if each[0].definition.baseline_comparison.proposed in each[1]]
     (folder / "methods").mkdir(exist_ok=True)
-    picture = folder / "methods" / f"{name}.svg"
     # First of the paper that proposes the method.
-    order = sorted(users, key=lambda key: find_algorithm(key) not in users[key])
-    drawn = (draw_run(studies[key], users[key], picture) for key in order)
+    drawn = (draw_run(*each, folder / "methods" / f"{name}.svg") for each in papers + users)
     return SimpleNamespace(
         name=name,
         title=text.partition("\n")[0].removeprefix("# "),
@@ -200,37 +163,28 @@ def describe_planner(
         details=inspect.cleandoc(module.__doc__).replace("<", "&lt;"),
         maps=getattr(module, "workspaces", None),
         users=users,
-        algorithms=[key for key in users if find_algorithm(key) in users[key]],
+        papers=papers,
         run=next(filter(None, drawn), None),
-        settings=[
-            [
-                f"`{setting}`",
-                f"{declared.meaning} ({declared})",
-                "; ".join(describe_value(studies[key], users[key], setting) for key in users),
-            ]
-            for setting, declared in accepted.items()
+        settings=settings,
+        open=[
+            (study, row)
+            for study, own in users
+            for row in study.assumptions
+            if row["setting"] in settings and {*own} & {*(row["methods"] or own)}
         ],
-        open=collect(
-            lambda study, methods: [
-                row
-                for row in study.assumptions
-                if row["setting"] in accepted and methods & set(row["methods"] or methods)
-            ]
-        ),
-        achieved=collect(lambda study, methods: select_rows(study, methods)),
-        resting=collect(select_claims),
+        achieved=[
+            (study, row)
+            for study, own in users
+            for row in study.families.itertuples()
+            if row[0] in {study.job.labels.get(each, each) for each in own}
+        ],
+        resting=[(study, claim) for study, own in users for claim in select_claims(study, own)],
     )
 
 
 def list_users(study: SimpleNamespace, planner: str) -> list[str]:
     """List the methods of a study that use a planner."""
     return [name for name in study.definition.methods if study.definition.planner(name) == planner]
-
-
-def find_algorithm(key: str) -> str:
-    """Find the method of a study whose plain Python `algorithms` has."""
-    text = (HERE / "algorithms" / f"{key}.py").read_text(encoding="utf-8")
-    return re.search(rf'^METHOD = "{key}/(\w+)"$', text, re.M)[1]
 
 
 def draw_run(
@@ -271,8 +225,8 @@ def describe_value(study: SimpleNamespace, methods: list[str], setting: str) -> 
     return f"{study.name}: {values}" if values else ""
 
 
-def select_claims(study: SimpleNamespace, methods: set[str]) -> list[Any]:
+def select_claims(study: SimpleNamespace, methods: Collection[str]) -> list[Any]:
     """Return the claims of a study whose checks name one of some methods."""
-    checks = {claim.id: claim.checks for claim in study.definition.claims}
-    named = {name: set(re.findall(r"\w+", repr(own))) for name, own in checks.items()}
-    return [claim for claim in study.claims if named[claim["id"]] & methods]
+    checks = {claim.id: repr(claim.checks) for claim in study.definition.claims}
+    named = re.compile(rf"\b({'|'.join(methods)})\b")
+    return [claim for claim in study.claims if named.search(checks[claim["id"]])]

@@ -1,6 +1,5 @@
 """One picture of all printed numbers: each beside our range, a strip per table."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import matplotlib as mpl
@@ -8,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from bezierplan.analysis.numbers import comparison
 from bezierplan.figures import style
@@ -22,6 +22,17 @@ HEIGHT = 0.085
 """Height of a dot, in inches."""
 WIDE, TALL = 8.8, 3.9
 """Widths of the pictures for screens and for phones, in inches."""
+HEADS = ("inside", "off by,\nmedian", "why they prove nothing")
+"""Above what stands beside the strips; the last one not on phones."""
+LOOKS = {
+    (False, True): (style.BLUE, style.BLUE),
+    (False, False): (style.BLUE, "white"),
+    (True, True): ("0.65", "0.8"),
+    (True, False): ("0.65", "white"),
+}
+"""Is our range too wide to tell, is the number inside it? -> colours of a dot's edge and face."""
+LEGEND = ("inside our range", "outside", "pale: too wide to tell")
+"""Meanings of the first looks."""
 
 
 def scale_numbers(numbers: pd.DataFrame) -> np.ndarray:
@@ -31,13 +42,10 @@ def scale_numbers(numbers: pd.DataFrame) -> np.ndarray:
     ours, printed = numbers["value_ours_scaled"], numbers["value_published"]
     below = printed < ours
     ends = np.where(below, ours - numbers["low95_predicted"], numbers["high95_predicted"] - ours)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        places = np.nan_to_num((printed - ours) / ends)
+    places = np.nan_to_num((printed - ours) / ends)
     # A number that its digits put inside is drawn there, and another outside.
-    inside = numbers["position"] == "inside"
-    places = np.where(inside, np.clip(places, -1, 1), places)
-    outside = np.sign(places) * np.maximum(np.abs(places), 1 + STEP)
-    return np.clip(np.where(inside, places, outside), -FAR, FAR)
+    outside = np.sign(places) * np.clip(np.abs(places), 1 + STEP, FAR)
+    return np.where(numbers["position"] == "inside", np.clip(places, -1, 1), outside)
 
 
 def stack_dots(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,37 +63,29 @@ def stack_dots(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return places, levels
 
 
-def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figure:
+def draw(numbers: pd.DataFrame, width: float) -> Figure:
     """Draw all printed numbers, a strip per table.
 
-    numbers: rows of `numbers.csv` that count. names: study -> name of the paper. width: in inches.
+    numbers: rows of `numbers.csv` that count. width: in inches.
     """
-    ranged = numbers[numbers["low95_predicted"].notna() & numbers["position"].notna()]
-    strips = [(place, own) for place, own in ranged.groupby(["study", "table"], sort=False)]
+    strips = [*numbers.groupby(["study", "table"], sort=False)]
     dots = [stack_dots(scale_numbers(own)) for _, own in strips]
     heights = [max(3.0, np.ptp(levels) + 3) * HEIGHT for _, levels in dots]
-    wide = width > TALL
-    total = sum(heights) + (1.0 if wide else 1.4)
+    wide, whole = width > TALL, sum(heights)
+    total = whole + (1.0 if wide else 1.4)
+    columns = (1.04, 1.2, 1.38) if wide else (1.04, 1.4)
     with mpl.rc_context({"font.size": 8 if wide else 7}):
         figure = Figure(figsize=(width, total))
-        left, share = (0.23, 0.4) if wide else (0.34, 0.4)
-        axes = figure.add_axes((left, 0.55 / total, share, sum(heights) / total))
-        top, last = sum(heights), ""
-        for (place, own), (x, levels), height in zip(strips, dots, heights, strict=True):
+        axes = figure.add_axes((0.23 if wide else 0.34, 0.55 / total, 0.4, whole / total))
+        top, last = whole, ""
+        for ((study, table), own), (x, levels), height in zip(strips, dots, heights, strict=True):
             middle = top - height / 2
             _draw_strip(axes, own, x, middle + levels * HEIGHT)
-            study, table = place
-            told = own[~own["wide"].astype(bool)]
-            inside = int((told["position"] == "inside").sum())
-            off = 100 * np.median(compute_deviations(own))
             _write(axes, -0.03, middle, table.replace("table", "Table "), "right")
-            _write(axes, 1.04, middle, f"{inside} of {len(told)}" if len(told) else "–", "left")
-            _write(axes, 1.2 if wide else 1.4, middle, f"{off:.2g} %", "left")
-            if wide:
-                why = describe_reasons(told["reason"]) if len(told) else "too wide to tell"
-                _write(axes, 1.38, middle, why, "left")
+            for place, text in zip(columns, describe_strip(own)):
+                _write(axes, place, middle, text)
             if study != last:
-                _write(axes, -0.5 if wide else -0.84, middle, names[study], "left", weight="bold")
+                _write(axes, -0.5 if wide else -0.84, middle, study, weight="bold")
                 axes.axhline(
                     top,
                     color="0.85",
@@ -97,20 +97,18 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
             top, last = top - height, study
         axes.axvspan(-1, 1, color="0.92", zorder=0)
         axes.axvline(0, color="white", zorder=0.5)
-        axes.set(xlim=(-FAR - 0.6, FAR + 1.2), ylim=(0, sum(heights)), yticks=[])
+        axes.set(xlim=(-FAR - 0.6, FAR + 1.2), ylim=(0, whole), yticks=[])
         axes.set_xticks([-FAR, 0, FAR], ["far below\nour range", "ours", "far above\nour range"])
         axes.spines[:].set_visible(False)
         axes.tick_params(length=0)
-        _write(axes, 1.04, sum(heights) + 0.12, "inside", "left")
-        _write(axes, 1.2 if wide else 1.4, sum(heights) + 0.12, "off by,\nmedian", "left")
-        if wide:
-            _write(axes, 1.38, sum(heights) + 0.12, "why they prove nothing", "left")
+        for place, text in zip(columns, HEADS):
+            _write(axes, place, whole + 0.12, text)
         axes.legend(
-            handles=[_build_dots([0], [0], *look)[0] for look in LOOKS.values()],
-            labels=list(LOOKS),
+            handles=[_build_dots([0], [0], *look) for _, look in zip(LEGEND, LOOKS.values())],
+            labels=LEGEND,
             loc="lower center",
-            bbox_to_anchor=(0.5, 1.0 + 0.2 / sum(heights)),
-            ncols=len(LOOKS) if wide else 1,
+            bbox_to_anchor=(0.5, 1.0 + 0.2 / whole),
+            ncols=len(LEGEND) if wide else 1,
             frameon=False,
             handletextpad=0.1,
             columnspacing=0.8,
@@ -118,44 +116,36 @@ def draw(numbers: pd.DataFrame, names: Mapping[str, str], width: float) -> Figur
     return figure
 
 
-def describe_reasons(reasons: pd.Series) -> str:
-    """Say why the numbers of a table that can be tested prove nothing, and of how many that is so
-    unless of all.
+def describe_strip(numbers: pd.DataFrame) -> tuple[str, str, str]:
+    """Say of how many numbers of a table that can be tested lie inside our range, how far off all
+    are, and why they prove nothing: of how many that is so unless of all.
     """
-    counts = reasons.value_counts()
-    return "\n".join(
-        reason if count == len(reasons) else f"{count} of {len(reasons)}: {reason}"
-        for reason, count in counts.items()
+    told = numbers[~numbers["wide"].astype(bool)]
+    off = f"{100 * np.median(compute_deviations(numbers)):.2g} %"
+    if told.empty:
+        return "–", off, "too wide to tell"
+    inside, count = (told["position"] == "inside").sum(), len(told)
+    why = "\n".join(
+        reason if own == count else f"{own} of {count}: {reason}"
+        for reason, own in told["reason"].value_counts().items()
     )
-
-
-LOOKS = {
-    "inside our range": (style.BLUE, style.BLUE),
-    "outside": (style.BLUE, "white"),
-    "pale: too wide to tell": ("0.65", "0.8"),
-}
-"""Meaning of a dot -> colours of its edge and its face."""
+    return f"{inside} of {count}", off, why
 
 
 def _draw_strip(axes: Axes, own: pd.DataFrame, places: np.ndarray, heights: np.ndarray) -> None:
     """Draw the dots of a table, filled inside our range and pale where it is too wide to tell."""
-    wide, inside = own["wide"].astype(bool), own["position"] == "inside"
-    for chosen, (edge, face) in (
-        (~wide & inside, LOOKS["inside our range"]),
-        (~wide & ~inside, LOOKS["outside"]),
-        (wide & inside, ("0.65", "0.8")),
-        (wide & ~inside, ("0.65", "white")),
-    ):
-        axes.add_line(_build_dots(places[chosen], heights[chosen], edge, face)[0])
+    for (wide, inside), look in LOOKS.items():
+        chosen = (own["wide"] == wide) & ((own["position"] == "inside") == inside)
+        axes.add_line(_build_dots(places[chosen], heights[chosen], *look))
 
 
-def _build_dots(x: object, y: object, edge: str, face: str) -> list[mpl.lines.Line2D]:
+def _build_dots(x: object, y: object, edge: str, face: str) -> Line2D:
     """Build round marks at places, with colours of edge and face."""
     look = {"marker": "o", "linestyle": "", "markersize": 4.6, "markeredgewidth": 0.9}
-    return [mpl.lines.Line2D(x, y, markeredgecolor=edge, markerfacecolor=face, **look)]
+    return Line2D(x, y, markeredgecolor=edge, markerfacecolor=face, **look)
 
 
-def _write(axes: Axes, x: float, y: float, text: str, align: str, **look: str) -> None:
+def _write(axes: Axes, x: float, y: float, text: str, align: str = "left", **look: str) -> None:
     """Write beside the strips: x as a share of their width, y in inches."""
     place = axes.get_yaxis_transform()
     axes.text(x, y, text, ha=align, va="center", transform=place, clip_on=False, **look)
@@ -168,18 +158,15 @@ def compute_deviations(numbers: pd.DataFrame) -> np.ndarray:
     nothing, and are left out.
     """
     numbers = numbers[numbers["reason"] != comparison.UNDEFINED]
-    published, ours = (
-        numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
-    )
-    off = np.abs(ours - published)
-    return np.divide(
-        off, np.abs(published), out=np.where(off > 0, np.inf, 0.0), where=published != 0
-    )
+    published = numbers["value_published"]
+    off = (numbers["value_ours_scaled"] - published).abs() / published.abs()
+    # Both are 0.
+    return off.fillna(0.0).to_numpy()
 
 
-def save(numbers: pd.DataFrame, names: Mapping[str, str], folder: Path) -> None:
+def save(numbers: pd.DataFrame, folder: Path) -> None:
     """Save the picture for screens and that for phones."""
     counted = numbers[numbers["counted"].astype(bool)]
     for name, width in (("numbers", WIDE), ("numbers_tall", TALL)):
-        picture = draw(counted, names, width)
+        picture = draw(counted, width)
         picture.savefig(folder / f"{name}.png", dpi=150, metadata={"Software": None})

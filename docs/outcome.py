@@ -3,7 +3,8 @@ scales.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
-`make outcome` writes it; the site reads it.
+`make outcome` writes it; the site reads it. Sentences stand in `templates`: `outcome` for a paper,
+`identified`, `families` for a table of methods, and `readme`.
 """
 
 import re
@@ -22,6 +23,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.numbers import comparison, methods
 from bezierplan.analysis.outcome import headline, texts
 from bezierplan.commands import read_studies
+from bezierplan.figures.page import build
 from bezierplan.running.inputs import PAPER
 from bezierplan.study.definition import Study
 from bezierplan.study.evidence import list_settings
@@ -34,57 +36,8 @@ CHECKS, TEXTS = "claim_checks.csv", "texts.csv"
 OF_STUDY = ("audit.csv", "claims_by_reading.csv")
 """Of each study: what its printed numbers say alone, and its claims under readings."""
 IDENTIFIED_PATHS = "song2016/beyond/identified.png"
-PICTURE = """<picture><source media="(max-width: 600px)" srcset="docs/outcome/numbers_tall.png"><img src="docs/outcome/numbers.png" alt="All printed numbers beside our ranges, a strip per table: how many lie inside, and how far from ours they are"></picture>"""  # noqa: E501
-METHODS_NOTE = (
-    "Least often free (without a collision) first. Excess of free curves (not counted cells) over "
-    "the exact shortest path, and time: medians over the problems. The rounded path turns no "
-    "tighter than the method's median free path without corners. The method beats it in a problem "
-    "if its median path is shorter, or has wider turns than any rounded path can have. A dash: all "
-    "paths have corners."
-)
-ROUNDED_NOTE = (
-    "The row of the rounded shortest path, which is not compared with itself, has the turning "
-    "radius that it takes if none is asked; where no arc fits, it keeps a corner."
-)
-CLAIMS_NOTE = (
-    "Most claims are tested by several comparisons, such as one for each map. A claim is not about "
-    "one map alone, so maps of ours can test it, though not a printed length. By default: as we "
-    "read the paper. In quotes: other ways to read it, or to count ([what they "
-    "change](../../config/studies/{}/assumptions.yaml)). No effect: the difference is smaller than "
-    "our criterion."
-)
-OPEN = (
-    "No paper prints all that its numbers depend on, so a number that our runs miss does not show "
-    "that the paper is wrong."
-)
-RANGE = "Our range holds 95 % of the results if our program repeats the paper's experiment."
-
-TABLES_NOTE = (
-    f"{comparison.SIGNS_MEAN}. A number without a sign does not count: it repeats another one, "
-    "follows from others, or is a time, of another machine. Impossible: no runs give it, such as a "
-    "mean rank below 1, or mean ranks of m methods whose mean is not (m + 1) / 2. A number outside "
-    "our range does not show that the paper is wrong, because it does not print all that its "
-    "numbers depend on."
-)
 MARKS = ("\\*", "†", "‡", "§")
 """Beside printed numbers that prove nothing about the paper, one for each reason."""
-
-IDENTIFIED = (
-    "Some printed lengths equal lengths that can be calculated without any run: those of paths "
-    "through centres of cells (Song 2016, to the last digit), or sums of straight and diagonal "
-    "moves with the root of two rounded to 1.414 (Ma 2020, cut to three decimals). Each row gives "
-    "the printed number, the closest such length, its cells or moves, and the chance that a number "
-    "drawn nearby would match as well. A row for several numbers says how many of them match."
-)
-LISTED_NOTE = (
-    "Some of its lengths are those of [paths that can be listed](identified.md). That tells what "
-    "the paper measured, not whether its method finds such paths."
-)
-MORE = (
-    "More: [what the paper leaves open](../../config/studies/{0}/assumptions.yaml), [its maps, "
-    "methods and settings](../../config/studies/{0}/experiments.yaml), [its method in plain "
-    "Python](../algorithms/{0}.py), [all claims](claims.csv), [all numbers](numbers.csv)."
-)
 
 
 def main() -> None:
@@ -92,69 +45,48 @@ def main() -> None:
     `make outcome` has not made yet.
     """
     studies = read_studies()
-    settings = pd.DataFrame(
-        [(key, *row) for key, each in studies.items() for row in list_settings(each)],
-        columns=["study", "of", "setting", "value"],
-    )
-    tables = {
-        key: {
-            name: (study.tables[name].title, study.tables[name].index, bool(table.identify))
-            for name, table in study.find_tables_of_runs().items()
-            if table.published
-        }
-        for key, study in studies.items()
-    }
-    titles = {key: study.title for key, study in studies.items()}
     shutil.copyfile(RESULTS / IDENTIFIED_PATHS, KEPT / "identified.png")
-    copy_tables(titles, settings)
-    answers = fill_texts(KEPT, {key: study.verdict_file() for key, study in studies.items()})
+    copy_tables(studies)
+    answers = fill_texts(KEPT, studies)
     pd.DataFrame(
         [(key, each.title, each.text) for key, each in answers.items()],
         columns=["study", "title", "text"],
     ).to_csv(KEPT / TEXTS, index=False)
-    numbers, claims = (pd.read_csv(KEPT / name) for name in TABLES[:2])
-    numbers_picture.save(numbers, {key: key for key in titles}, KEPT)
-    labels = {key: study.labels for key, study in studies.items()}
-    of_problems = pd.read_csv(KEPT / "methods.csv")
+    tables = [pd.read_csv(KEPT / name) for name in TABLES]
+    numbers_picture.save(tables[0], KEPT)
+    pages = {KEPT / "identified.md": build_identified_page(KEPT, studies)}
     for key, answer in answers.items():
-        own_claims, own_numbers, own_problems = (
-            each[each["study"] == key] for each in (claims, numbers, of_problems)
-        )
-        own_problems = own_problems[~own_problems["method"].isin(studies[key].variants())]
-        measured = build_methods_table(own_problems, {key: labels[key]})
-        page = build_paper_page(
-            titles[key],
-            answer,
-            own_claims,
-            studies[key].claims,
-            measured,
-            own_numbers,
-            RESULTS / key,
-            tables[key],
-        )
-        (KEPT / f"{key}.md").write_text(page, encoding="utf-8")
-    (KEPT / "identified.md").write_text(build_identified_page(KEPT, studies), encoding="utf-8")
+        own = (table[table["study"] == key] for table in tables)
+        pages[KEPT / f"{key}.md"] = build_paper_page(studies[key], answer, *own)
+    for file, page in pages.items():
+        file.write_text(f"{page}\n", encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
-    README.write_text(replace_block(readme, BLOCK, build_block(KEPT, labels)), encoding="utf-8")
+    README.write_text(replace_block(readme, BLOCK, build_block(KEPT, studies)), encoding="utf-8")
     if faults := [f"{key}: {line}" for key, each in answers.items() for line in each.faults]:
         raise ValueError("texts of verdict.yaml: " + "; ".join(faults))
 
 
-def fill_texts(folder: Path, files: Mapping[str, str | None]) -> dict[str, facts.FilledText]:
-    """Return the answer to each paper from the tables of a folder. files: by study, if any."""
+def fill_template(name: str, **values: Any) -> str:
+    """Fill a template with values."""
+    environment = build.build_environment(RESULTS, Path(__file__).parent / "templates")
+    environment.filters["cell"] = escape_cell
+    environment.globals |= {"table": format_table, "signs_mean": comparison.SIGNS_MEAN}
+    return environment.get_template(f"{name}.md.jinja").render(values).strip()
+
+
+def fill_texts(folder: Path, studies: Mapping[str, Study]) -> dict[str, facts.FilledText]:
+    """Return the answer to each paper that has one, from the tables of a folder."""
     return {
         key: facts.fill(texts.read(file), facts.read_outcome_tables(folder, key))
-        for key, file in files.items()
-        if file
+        for key, study in studies.items()
+        if (file := study.verdict_file())
     }
 
 
-def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
-    """Copy the tables of results into docs/outcome.
-
-    settings: a table of all methods' settings. Raises FileNotFoundError if results are missing.
+def copy_tables(studies: Mapping[str, Study]) -> None:
+    """Copy the tables of results into docs/outcome, beside one of all settings. Raises
+    FileNotFoundError if results are missing.
     """
-    KEPT.mkdir(parents=True, exist_ok=True)
     for name in ("numbers.csv", "methods.csv"):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
@@ -166,78 +98,64 @@ def copy_tables(studies: Iterable[str], settings: pd.DataFrame) -> None:
     checks = pd.concat(pd.read_csv(RESULTS / key / CHECKS) for key in studies)
     primary = claims.loc[claims["primary"], ["study", "id", "variant"]]
     checks.merge(primary).to_csv(KEPT / CHECKS, index=False, float_format="%.6g")
-    settings.to_csv(KEPT / "settings.csv", index=False)
+    pd.DataFrame(
+        [(key, *row) for key, study in studies.items() for row in list_settings(study)],
+        columns=["study", "of", "setting", "value"],
+    ).to_csv(KEPT / "settings.csv", index=False)
 
 
 def build_paper_page(
-    title: str,
+    study: Study,
     answer: facts.FilledText,
-    claims: pd.DataFrame,
-    declared: Iterable[Claim],
-    measured: str,
     numbers: pd.DataFrame,
-    folder: Path,
-    tables: Mapping[str, tuple[str, list[str], bool]],
+    claims: pd.DataFrame,
+    of_problems: pd.DataFrame,
 ) -> str:
     """Return the page of a paper, as markdown: the answer, its main claims, its method beside the
     rounded shortest path, and its tables with the printed number beside ours in each cell.
 
-    claims, numbers: of this paper. declared: its claims in claims.yaml. measured: the table of
-    methods. folder: the study's results. tables: name -> title, which columns name the rows, and
-    whether some lengths can be listed; for tables with printed numbers.
+    numbers, claims, of_problems: rows of this paper in `TABLES`.
     """
-    heads = {"id": "claim", "statement": "in our words", "verdict": "verdict"}
-    heads |= {"where_it_holds": "where it holds, by which criterion of ours, or why that is open"}
-    main = claims[claims["primary"] & claims["main"].astype(bool)]
-    by_id = {claim.id: claim for claim in declared}
-    main["where_it_holds"] = [
-        describe_where_or_why(row, by_id[row["id"]]) for row in main.to_dict("records")
-    ]
-    main = main[[*heads]]
-    parts = [
-        f"# {title}",
-        f"**{answer.title}.** {answer.text}",
-        "## What abstract and conclusion claim",
-        write_table(main.rename(columns=heads).set_index("claim")),
-        CLAIMS_NOTE.format(folder.name),
-        "## Its methods beside the exact shortest path with rounded corners",
-        measured,
-        "## Its tables",
-        MORE.format(folder.name),
-        TABLES_NOTE,
-    ]
-    for name, (table_title, index, is_listed) in tables.items():
-        ours = pd.read_csv(folder / PAPER / f"{name}.csv", dtype=str, keep_default_na=False)
-        laid = pd.read_csv(folder / PAPER / f"{name}.comparison.csv", dtype={"as_printed": str})
-        own = numbers[numbers["table"] == name]
-        told, marks = mark_worthless(own[own["position"] != comparison.NO_RANGE])
+    declared = {claim.id: claim for claim in study.claims}
+    main = claims[claims["primary"] & claims["main"].astype(bool)].to_dict("records")
+    own = of_problems[~of_problems["method"].isin(study.variants())]
+    tables = []
+    for name, table in study.find_published_tables().items():
+        ours, laid = (
+            pd.read_csv(
+                RESULTS / study.key / PAPER / f"{name}{kind}.csv", dtype=str, keep_default_na=False
+            )
+            for kind in ("", ".comparison")
+        )
         # Both list the printed numbers in the same order.
-        laid = laid.dropna(subset="table_row").assign(counted=own["counted"].to_numpy(), mark="")
-        laid.loc[laid["position"] != comparison.NO_RANGE, "mark"] = marks
-        parts += [
-            f"### {naming.format_heading(name)}: {table_title}",
-            *told,
-            *([LISTED_NOTE] if is_listed else []),
-            write_table(_place_beside(ours, laid, index)),
-        ]
-    return "\n\n".join(parts) + "\n"
+        laid["counted"] = numbers.loc[numbers["table"] == name, "counted"].to_numpy()
+        told, marks = mark_worthless(laid.loc[laid["position"] != comparison.NO_RANGE, "reason"])
+        tables.append((name, table, told, *lay_beside(ours, laid, marks, table.index)))
+    return fill_template(
+        "outcome",
+        study=study,
+        answer=answer,
+        claims=[row | {"why": describe_where_or_why(row, declared[row["id"]])} for row in main],
+        methods=build_methods_table(own, {study.key: study}),
+        tables=tables,
+    )
 
 
-def mark_worthless(numbers: pd.DataFrame) -> tuple[list[str], list[str]]:
-    """Return sentences on why numbers of a table prove nothing about the paper, and the mark of
-    each number (n,), empty if it has none.
+def mark_worthless(reasons: pd.Series) -> tuple[str, dict[str, str]]:
+    """Say why numbers of a table prove nothing about the paper, and return the mark of each reason.
 
-    If all have the same reason, the sentence alone says so. numbers: n rows with their reason.
+    If all have the same reason, the sentence alone says so. reasons: of the numbers, empty where
+    there is none.
 
-    >>> mark_worthless(pd.DataFrame({"reason": ["no exact map is printed", None]}))
-    (['\\\\* proves nothing about the paper: no exact map is printed.'], ['\\\\*', ''])
+    >>> mark_worthless(pd.Series(["no exact map is printed", ""]))[0]
+    '\\\\* proves nothing about the paper: no exact map is printed.'
     """
-    reasons = dict(zip(numbers["reason"].dropna().unique(), MARKS))
-    if reasons and numbers["reason"].nunique(dropna=False) == 1:
-        (reason,) = reasons
-        return [f"These numbers prove nothing about the paper: {reason}."], [""] * len(numbers)
-    told = [f"{mark} proves nothing about the paper: {reason}." for reason, mark in reasons.items()]
-    return [" ".join(told)] if told else [], [*numbers["reason"].map(reasons).fillna("")]
+    marks = dict(zip(filter(None, reasons.unique()), MARKS))
+    if len(marks) == 1 and "" not in {*reasons}:
+        (reason,) = marks
+        return f"These numbers prove nothing about the paper: {reason}.", {}
+    told = [f"{mark} proves nothing about the paper: {each}." for each, mark in marks.items()]
+    return " ".join(told), marks
 
 
 def describe_where_or_why(claim: Mapping[str, Any], declared: Claim | None) -> str:
@@ -269,31 +187,17 @@ def build_identified_page(folder: Path, studies: Mapping[str, Study]) -> str:
 
     folder: has the audits, from which the rows come.
     """
-    picture = (
-        "![The paths of Song 2016 on their grid, with the numbers of their cells](identified.png)"
-    )
-    parts = ["# Printed lengths of paths that can be listed", IDENTIFIED, picture]
+    found = []
     for key, study in studies.items():
         rules = tuple(
             entry.because
             for table in study.find_tables_of_runs().values()
             for entry in table.identify
         )
-        rows = pd.read_csv(folder / f"{key}_audit.csv", keep_default_na=False)
-        if not rules or (rows := rows[rows["rule"].str.startswith(rules)]).empty:
-            continue
-        # A row for several numbers names no metric, and says in words how many match.
-        of_one = rows["place"].str.contains("metric=")
-        rows = rows.assign(
-            printed=rows["printed"].where(of_one, ""),
-            limit=rows["limit"].where(of_one, ""),
-            item=rows["item"].map(naming.format_heading),
-            place=[name_place(place, study.labels) for place in rows["place"]],
-        )
-        names = {"item": "in", "place": "number", "limit": "calculated", "arithmetic": "paths"}
-        shown = rows[["item", "place", "printed", "limit", "arithmetic"]].rename(columns=names)
-        parts += [f"## {format_name(key)}", write_table(shown.astype(str).set_index("in"))]
-    return "\n\n".join(parts) + "\n"
+        rows = pd.read_csv(folder / f"{key}_audit.csv", dtype=str, keep_default_na=False)
+        own = [row for row in rows.to_dict("records") if row["rule"].startswith(rules)]
+        found += [(study, own)] if own else []
+    return fill_template("identified", found=found, name_place=name_place)
 
 
 def name_place(place: str, labels: naming.Labels) -> str:
@@ -302,128 +206,87 @@ def name_place(place: str, labels: naming.Labels) -> str:
     >>> name_place("problem=0_15, method=smooth, metric=length", {"smooth": "smooth path"})
     '0_15, smooth path'
     """
-    values = dict(part.split("=", 1) for part in place.split(", "))
-    values.pop("metric", None)
-    return ", ".join(
-        " or ".join(labels.get(name, name) for name in value.split(" or "))
-        for value in values.values()
-    )
+    values = re.sub(r"(, )?metric=\w+|\w+=", "", place)
+    return re.sub(r"\w+", lambda name: labels.get(name[0], name[0]), values)
 
 
-def _place_beside(ours: pd.DataFrame, numbers: pd.DataFrame, index: list[str]) -> pd.DataFrame:
-    """Return a table with the printed number before our range in each cell, or before ours.
+def lay_beside(
+    ours: pd.DataFrame, numbers: pd.DataFrame, marks: Mapping[str, str], index: list[str]
+) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of a table with the printed number before our range in each cell, or
+    before ours.
 
-    index: the columns that name the rows, which come first in our table.
+    ours, numbers: the table and its comparison, all text. index: the columns that name the rows,
+    which come first in our table.
     """
     heads = len(index)
-    values = ours.iloc[:, heads:]
+    names, values = ours.iloc[:, :heads], ours.iloc[:, heads:]
     # The paper prints nothing in these cells.
     cells = values.map(lambda text: f"– ours {text}" if text else "").to_numpy()
     for number in numbers.to_dict("records"):
         place = int(number["table_row"]), int(number["table_column"])
-        text = comparison.describe_range(number) or f"ours {values.iat[place]}"
+        signed = comparison.describe_range(number)
+        text = signed or f"ours {values.iat[place]}"
         if not number["counted"]:
             text = text[text.index("ours") :]
         # Whatever our map, no runs have such numbers.
-        mark = " (impossible)" if str(number["possible"]) == "False" else number["mark"]
+        impossible = number["possible"] == "False"
+        mark = " (impossible)" if impossible else marks.get(signed and number["reason"], "")
         cells[place] = f"{number['as_printed']}{mark} {text}"
-    names = ours.iloc[:, :heads].agg(", ".join, axis=1)
     # The paper may print no head.
-    head = ", ".join(filter(str.strip, ours.columns[:heads])) or ", ".join(index)
-    return pd.DataFrame(cells, pd.Index(names, name=head), ours.columns[heads:])
+    head = ", ".join(filter(str.strip, names)) or ", ".join(index)
+    rows = [[", ".join(own), *row] for own, row in zip(names.to_numpy(), cells)]
+    return [head, *values], rows
 
 
-def build_block(folder: Path, labels: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the README's answers, picture and table of methods, from a folder's tables.
-
-    labels: study -> name -> printed name.
-    """
+def build_block(folder: Path, studies: Mapping[str, Study]) -> str:
+    """Return the README's answers, picture and table of methods, from a folder's tables."""
     numbers, claims, of_problems = (pd.read_csv(folder / name) for name in TABLES)
-    answers = pd.read_csv(folder / TEXTS)
-    listed = "\n".join(
-        f"- **[{format_name(key)}]({KEPT}/{key}.md): {title}.** {text}"
-        for key, title, text in answers.itertuples(index=False)
-    )
-    said = f"{headline.describe_numbers(numbers)} {headline.describe_claims(claims)}"
-    parts = [
-        f"**{OPEN} {describe_methods(of_problems)}**",
-        listed,
-        PICTURE,
-        f"*{said} {RANGE}*",
-        build_methods_table(of_problems[of_problems["proposed"]], labels),
-    ]
-    return "\n\n".join(parts)
-
-
-def describe_methods(of_problems: pd.DataFrame) -> str:
-    """Say what the papers' methods are worth beside the exact shortest path with rounded corners.
-
-    of_problems: as from `methods.measure_studies`.
-    """
-    rows = methods.group_by_family(of_problems)
-    own = rows["proposed"].astype(bool)
-    times = [
-        f"{each.min():.2g} to {each.max():.3g} ms"
-        for each in (rows.loc[rows["method"] == "rounded", "cpu_ms"], rows.loc[own, "cpu_ms"])
-    ]
+    rows, place = methods.group_by_family(of_problems), ["study", "family"]
+    rounded = rows[rows["method"] == "rounded"]
+    own = rows[rows["proposed"].astype(bool)].merge(rounded, on=place, suffixes=("", "_rounded"))
     # Where every straight line is free, nobody can be shorter.
-    straight = of_problems.groupby(["study", "family"])["straight"].all()
-    blocked = [not straight[place] for place in zip(rows["study"], rows["family"])]
-    rounded = rows.loc[rows["method"] == "rounded", ["study", "family", "cpu_ms"]]
-    beside = rows[own].merge(rounded, on=["study", "family"], suffixes=("", "_rounded"))
-    faster = beside.loc[beside["cpu_ms"] < beside["cpu_ms_rounded"], "study"]
-    rows = rows[own & (rows["both"] > 0) & pd.Series(blocked, rows.index)]
-    others = rows[rows["adds"] > 0]
-    told = (
-        "A simpler planner, the exact shortest path with rounded corners, needs no random search "
-        f"and takes {times[0]} (the papers' methods: {times[1]}, faster than it in {len(faster)} "
-        f"of {naming.format_count(len(beside), 'kind')} of scenarios, those of "
-        f"{' and '.join(map(format_name, faster.unique()))}). "
-        f"In {len(rows) - len(others)} of {naming.format_count(len(rows), 'kind')} of scenarios "
-        "with smooth paths and a blocked straight line, the paper's method beats it in no problem"
+    blocked = ~of_problems.groupby(place)["straight"].all()
+    rivals = own[(own["both"] > 0) & own.join(blocked, on=place)["straight"]]
+    return fill_template(
+        "readme",
+        answers=pd.read_csv(folder / TEXTS).to_dict("records"),
+        said=[headline.describe_numbers(numbers), headline.describe_claims(claims)],
+        times=[rounded["cpu_ms"], own["cpu_ms"]],
+        own=own,
+        faster=own.loc[own["cpu_ms"] < own["cpu_ms_rounded"], "study"],
+        rivals=rivals,
+        better=rivals[rivals["adds"] > 0].to_dict("records"),
+        methods=build_methods_table(of_problems[of_problems["proposed"]], studies),
     )
-    better = " and ".join(
-        f"{each.adds:.0f} of {each.both:.0f} problems ({format_name(each.study)}, {each.family})"
-        for each in others.itertuples()
-    )
-    return f"{told}. The exceptions: {better}." if better else f"{told}."
 
 
-def build_methods_table(of_problems: pd.DataFrame, labels: Mapping[str, naming.Labels]) -> str:
+def build_methods_table(of_problems: pd.DataFrame, studies: Mapping[str, Any]) -> str:
     """Return a table of methods, those of each family together, and the meaning of its columns.
 
-    labels: study -> name -> printed name; several studies are named.
+    studies: with their labels; of several, each is named.
     """
     rows = methods.group_by_family(of_problems)
     named = {
-        f"{study}/{name}": f"{format_name(study)}, {label}" if len(labels) > 1 else label
-        for study, own in labels.items()
-        for name, label in own.items()
+        f"{key}/{name}": f"{naming.format_heading(key)}, {label}" if len(studies) > 1 else label
+        for key, study in studies.items()
+        for name, label in study.labels.items()
     }
     groups = rows.groupby(["study", "family"], sort=False)
     laid = methods.format_table(rows.iloc[groups.ngroup().argsort(kind="stable")], named)
-    own = f" {ROUNDED_NOTE}" if "rounded" in set(rows["method"]) else ""
-    return f"{write_table(laid)}\n\n*{METHODS_NOTE}{own}*"
+    return fill_template("families", laid=laid, rounded="rounded" in {*rows["method"]})
 
 
-def format_name(key: str) -> str:
-    """Return the name of a study for use in a sentence.
-
-    >>> format_name("song2016"), format_name("meledje")
-    ('Song 2016', 'Meledje')
-    """
-    return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
+def format_table(heads: Iterable[Any], rows: Iterable[Iterable[Any]]) -> str:
+    """Return a table in Markdown from its heads and rows."""
+    heads = [*heads]
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(map(escape_cell, line))} |" for line in lines)
 
 
-def write_table(table: pd.DataFrame) -> str:
-    """Write a table as markdown, its index first."""
-    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
-    rows += [
-        [name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)
-    ]
-    return "\n".join(
-        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
-    )
+def escape_cell(value: Any) -> str:
+    """Return a value as the text of a cell, in which a bar would end it."""
+    return " ".join(str(value).replace("|", "\\|").split())
 
 
 def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
@@ -433,11 +296,9 @@ def add_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     It has the verdict of the same claim at scale full.
     """
     keys = ["study", "id", "variant"]
-    theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
-    both = claims.merge(theirs, on=keys, how="left", validate="one_to_one")
-    columns = list(claims)
-    columns.insert(columns.index("verdict") + 1, "verdict_papers_size")
-    return both[columns]
+    theirs = claims[keys].merge(full, on=keys, how="left", validate="one_to_one")["verdict"]
+    claims.insert(claims.columns.get_loc("verdict") + 1, "verdict_papers_size", theirs)
+    return claims
 
 
 def replace_block(text: str, name: str, block: str) -> str:
@@ -445,10 +306,11 @@ def replace_block(text: str, name: str, block: str) -> str:
 
     Raises ValueError if there is no such part.
     """
-    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
-    if not 0 <= text.find(begin) < text.find(end):
-        raise ValueError(f"no part between {begin} and {end}")
-    return f"{text[: text.find(begin)]}{begin}\n{block}\n{text[text.find(end) :]}"
+    before, begin, rest = text.partition(f"<!-- {name} -->\n")
+    _, end, after = rest.partition(f"<!-- /{name} -->")
+    if not end:
+        raise ValueError(f"no part between <!-- {name} --> and <!-- /{name} -->")
+    return f"{before}{begin}{block}\n{end}{after}"
 
 
 if __name__ == "__main__":

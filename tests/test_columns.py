@@ -18,7 +18,7 @@ BLOCKED = {"blocked": MADE["blocked"]}
 def test_tables_of_columns_are_those_of_the_declarations():
     """`python docs/tables_of_keys.py` renews them."""
     text = keys.RESULTS_README.read_text(encoding="utf-8")
-    assert keys.update_columns(text) == text
+    assert keys.update(text) == text
     assert all(
         f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text
         for name in columns.TABLES

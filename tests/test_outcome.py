@@ -14,11 +14,7 @@ ROOT = Path(__file__).parents[1]
 
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
-    studies = read_studies()
-    shown = outcome.build_block(
-        ROOT / outcome.KEPT,
-        {key: study.labels for key, study in studies.items()},
-    )
+    shown = outcome.build_block(ROOT / outcome.KEPT, read_studies())
     assert outcome.replace_block(readme, outcome.BLOCK, shown) == readme
 
 

@@ -21,8 +21,7 @@ def ma2020():
 
 @pytest.mark.parametrize("study", KEYS)
 def test_the_facts_of_each_text_hold_in_the_kept_outcome(study):
-    files = {study: read_studies()[study].verdict_file()}
-    answer = outcome.fill_texts(KEPT, files)[study]
+    answer = outcome.fill_texts(KEPT, {study: read_studies()[study]})[study]
     assert answer.faults == []
     kept = pd.read_csv(KEPT / outcome.TEXTS).set_index("study").loc[study]
     assert (answer.title, answer.text) == (kept["title"], kept["text"])

@@ -44,19 +44,24 @@ def plan(
         history.append(lowest * grid.cell)
         if generation == generations:
             break
-        chromosomes = chromosomes[selected(moves, 1 / objective)]
-        for pair in range(0, population, 2):
+        # Proportional selection by a roulette wheel (eq. 10): as many parents as chromosomes.
+        wheel = np.cumsum(1 / objective)
+        drawn = np.searchsorted(wheel, moves.random(population) * wheel[-1], side="right")
+        chromosomes = chromosomes[np.minimum(drawn, population - 1)]
+        # Section III-E: swap what lies behind a random point, complement a random bit.
+        for pair in np.split(chromosomes, population // 2):
             if moves.random() < crossover_probability:
-                crossover(moves, chromosomes[pair], chromosomes[pair + 1])
+                cut = moves.integers(1, pair.shape[1])
+                pair[:, cut:] = pair[::-1, cut:].copy()
         for chromosome in chromosomes:
             if moves.random() < mutation_probability:
-                mutation(moves, chromosome)
+                chromosome[moves.integers(0, len(chromosome))] ^= 1
         chromosomes[0] = best  # elitism, which the paper leaves open
     found = grid.in_units(control_points(best[None], bits, occupied.shape[1], ends)[0])
     # Remark 3: of control points that coincide one remains.
-    start, *inner, target = problem.start, *map(tuple, found[1:-1].tolist()), problem.target
-    rest = [point for point in dict.fromkeys(inner) if point not in (start, target)]
-    return np.array([start, *rest, target]), np.array(history)
+    fixed = problem.start, problem.target
+    inner = [point for point in dict.fromkeys(map(tuple, found[1:-1])) if point not in fixed]
+    return np.array([problem.start, *inner, problem.target]), np.array(history)
 
 
 def control_points(chromosomes, bits, columns, ends):
@@ -65,11 +70,8 @@ def control_points(chromosomes, bits, columns, ends):
     """
     powers = 1 << np.arange(bits)[::-1]
     numbers = chromosomes.reshape(len(chromosomes), -1, bits) @ powers
-    points = np.empty((len(numbers), numbers.shape[1] + 2, 2))
-    points[:, 0], points[:, -1] = ends
-    points[:, 1:-1, 0] = numbers % columns + 0.5
-    points[:, 1:-1, 1] = numbers // columns + 0.5
-    return points
+    centres = np.stack([numbers % columns, numbers // columns], axis=2) + 0.5
+    return np.array([[ends[0], *own, ends[1]] for own in centres])
 
 
 def objectives(points, occupied, penalty, samples):
@@ -79,7 +81,7 @@ def objectives(points, occupied, penalty, samples):
     pieces = points.shape[1] - 3  # cubic segments, with a continuous second derivative (eq. 6)
     weights = sample_matrix("piecewise_cubic", pieces + 3, samples)
     step = (samples - 1) // pieces
-    length, bad = np.zeros(len(points)), np.zeros(len(points), dtype=int)
+    length = bad = 0
     for i in range(pieces):
         w = weights[i * step : (i + 1) * step + 1, i : i + 4]
         p = points[:, None, i : i + 4]
@@ -89,21 +91,3 @@ def objectives(points, occupied, penalty, samples):
         column, row = (x[:, 1:] + ON_LINE).astype(int), (y[:, 1:] + ON_LINE).astype(int)  # eq. 8
         bad += occupied[row, column].sum(axis=1)
     return length + penalty * bad
-
-
-def selected(rng, fitness):
-    """Proportional selection by a roulette wheel (eq. 10): as many parents as chromosomes."""
-    wheel = np.cumsum(fitness)
-    drawn = np.searchsorted(wheel, rng.random(len(fitness)) * wheel[-1], side="right")
-    return np.minimum(drawn, len(fitness) - 1)
-
-
-def crossover(rng, one, other):
-    """Section III-E: swap, in place, what lies behind a random point of two chromosomes."""
-    cut = rng.integers(1, len(one))
-    one[cut:], other[cut:] = other[cut:].copy(), one[cut:].copy()
-
-
-def mutation(rng, chromosome):
-    """Section III-E: complement, in place, a random bit."""
-    chromosome[rng.integers(0, len(chromosome))] ^= 1
