@@ -92,6 +92,11 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve, 
     assert found.claimed_feasible == (bad == 0)
 
 
+def test_a_path_that_stays_at_its_start_has_no_occupied_points():
+    found = plan(start=5, target=5, occupied_point_penalty=10.0)
+    assert (found.objective, found.history.tolist()) == (0.0, [0.0])
+
+
 @pytest.mark.parametrize("penalty", [0.0, 10.0])
 def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
     """Of the same runs without elitism: the best so far is the least of the generations."""

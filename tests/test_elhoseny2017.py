@@ -145,7 +145,7 @@ def results(side, least):
 
 
 CHECK = function.Options(
-    test="function", name="printed_over_bound", effect="ratio", effect_unit="-"
+    test="function", name="printed_over_bound", statistic="ratio", effect_unit="-"
 )
 
 

@@ -216,6 +216,11 @@ def test_heights_come_back_from_text_bit_by_bit():
     assert files.read_json(files.write_json(workspace("plain"))).heights is None
 
 
+def test_heights_are_a_source_of_a_map(tmp_path):
+    description = {"kind": "grid", "file": "map.txt", "cell": 1, "unit": "m", "heights": "hill.txt"}
+    assert files.sources(description, tmp_path) == [tmp_path / "map.txt", tmp_path / "hill.txt"]
+
+
 @pytest.mark.parametrize("text", ["0 0 0", "0 0 0\n0 0", "0 0 0\n0 x 0", "0 0 inf\n0 0 0"])
 def test_faults_of_heights_are_told(text, tmp_path):
     (tmp_path / "map.txt").write_text("...\n...")

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from pathlib import Path as File
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
@@ -421,13 +421,7 @@ def shortest_path(problem: Problem) -> shortest_paths.Bound:
     4.5113
     """
     _check_problem(problem)
-    return _bound(problem)[1]
-
-
-def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
-    """Return a problem on the map for its robot, with its exact shortest path."""
-    home = problem_files.place_problem(problem)
-    return home, shortest_paths.shortest_path(home)
+    return shortest_paths.shortest_path(problem_files.place_problem(problem))
 
 
 def check(problem: Problem, path: Path) -> Judgement:
@@ -462,8 +456,10 @@ def check(problem: Problem, path: Path) -> Judgement:
     if not isinstance(path, Path) or not _has_numbers(path.points, len(path.points), 2):
         raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = read_path(Path(path.curve, np.array(path.points, dtype=float)))
+    home = problem_files.place_problem(problem)
+    bound = shortest_paths.shortest_path(home)
     # The verdict is about the plain copy; the caller gets the path that was given.
-    return Judgement(**judgement.compute_judgement(*_bound(problem), plain) | {"path": path})
+    return Judgement(**judgement.compute_judgement(home, bound, plain) | {"path": path})
 
 
 def plan(
@@ -523,7 +519,7 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.247, 0.5)
     """
-    (answer,) = _answer([problem], method, 1, seed, robot_radius, via, settings)
+    (answer,) = _answer([problem], method, 1, settings, seed, robot_radius, via)
     return answer
 
 
@@ -580,7 +576,7 @@ def compare(
         label = label or _name(method)
         if label in answers:
             raise ValueError(f"methods: {label}: twice; expected a dict with a label for each")
-        answers[label] = _answer(asked, method, repeats, settings=settings, **options)
+        answers[label] = _answer(asked, method, repeats, settings, **options)
     return Comparison(answers)
 
 
@@ -588,10 +584,10 @@ def _answer(
     problems: Sequence[Problem],
     method: Method | None,
     repeats: int,
+    settings: Mapping[str, Any],
     seed: int = 0,
     robot_radius: float = 0.0,
     via: Sequence[Place] = (),
-    settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> list[Answer]:
     """Return the answers of a method to problems: `repeats` for each, with seeds in a row, or one
     if the method draws no random numbers.

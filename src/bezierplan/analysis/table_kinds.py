@@ -14,8 +14,7 @@ from bezierplan.schema.model import (
     Column,
     Count,
     Decimals,
-    Experiment,
-    Flag,
+    ExperimentName,
     Function,
     Line,
     Metric,
@@ -27,13 +26,15 @@ from bezierplan.schema.model import (
     Where,
     build_error,
     build_list_type,
+    build_name_type,
+    build_text_type,
     convert_to_list,
-    match_text,
 )
 
 PublishedFile = Annotated[
-    str,
-    match_text(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"),
+    build_text_type(
+        r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"
+    ),
     Names("published"),
 ]
 WORDS = ("value", "statistic")
@@ -41,7 +42,7 @@ WORDS = ("value", "statistic")
 `values`, and the statistic of it.
 """
 # A column of the runs table, or one of these words.
-Columns = build_list_type(Annotated[Name, Names("level")], least=0)
+Columns = build_list_type(build_name_type("level"), least=0)
 
 
 class TableEntry(Model):
@@ -69,7 +70,7 @@ class TableValue(Model):
         description="a column of numbers of the runs table that no value of these runs can lie "
         "below, if the metric has no such bound",
     )
-    defined: Flag = Field(
+    defined: bool = Field(
         True,
         description="whether the paper says what it counts here; if not, its numbers are shown "
         "next to ours, but prove nothing; left out: true",
@@ -127,7 +128,7 @@ class Pivot(TableEntry):
     """A table of runs, compared with published numbers."""
 
     kind: Literal["pivot"] = Field(description="pivot")
-    experiment: Experiment = Field(description="the name of an experiment")
+    experiment: ExperimentName = Field(description="the name of an experiment")
     where: Where = Field(
         {},
         description="column of the runs table → value or list of values, "

@@ -63,7 +63,7 @@ def main(
         made[f"here:{candidate}"] = (
             _read(Path(candidate), asked)
             if candidate.endswith(".csv")
-            else api._answer([*asked.values()], candidate, repeats, settings=settings or {})
+            else api._answer([*asked.values()], candidate, repeats, settings or {})
         )
     compared = api.Comparison(made)
     own = benchmark.compute_summaries(compared.runs) if made else stored[:0]

@@ -23,7 +23,7 @@ def _merge_keys(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
     # Mappings such as `where` may be given for a part and for all.
     both = {
         key: _merge_keys(part[key], common[key])
-        for key in part.keys() & common.keys()
+        for key in part.keys() & common
         if isinstance(part[key], dict) and isinstance(common[key], dict)
     }
     return common | part | both

@@ -4,7 +4,7 @@ from it, and tests compare the rest.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Axis = Literal["x", "y", "z"]
-Words = Annotated[
-    dict[Any, str] | list[str], build_mapping_type(dict[Setting, Line], build_list_type(Line))
-]
+Words = build_mapping_type(dict[Setting, Line], build_list_type(Line))
 
 
 class Layout(Model):

@@ -36,11 +36,13 @@ NEUTRAL = {
 }
 
 COMPUTING = {
-    **{name: [name] for name in ("numpy", "scipy", "shapely", "pandas", "pyarrow", "jinja2")},
+    **{
+        name: [name]
+        for name in ("numpy", "scipy", "shapely", "pandas", "pyarrow", "jinja2", "seaborn")
+    },
     "numba": ["numba", "llvmlite"],
     "matplotlib": ["matplotlib", "pillow"],
     "PIL": ["pillow"],
-    "seaborn": ["seaborn"],
 }
 """Modules of libraries whose versions can change what a job writes -> names of these libraries."""
 
@@ -139,11 +141,7 @@ def _parse(source: bytes) -> _Syntax:
             and b"__doc__" not in source
         ):
             node.body = node.body[1:]
-        elif (
-            isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Name)
-            and node.func.id == "About"
-        ):
+        elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "About":
             # The words about a planner's setting; what remains is its unit.
             node.args = node.args[2:]
     return _Syntax(hash_text(repr(_nest(tree))), sorted(map(list, imports)), about)
@@ -227,10 +225,8 @@ def describe_code(functions: tuple[Callable, ...], *modules: str) -> dict[str, s
     return {"code": hash_text(" ".join([*trees, reached.digest]))} | versions
 
 
-@cache
-def find_library_version(name: str) -> str:
-    """Return the version of an installed library."""
-    return importlib.metadata.version(name)
+# The version of an installed library.
+find_library_version = cache(importlib.metadata.version)
 
 
 class _Reach(NamedTuple):
@@ -273,8 +269,7 @@ def compute_content_digest(*files: str) -> str:
     """Return the digest of the content of files, in this order: unlike a timestamp, it shows a
     change. A file that is not there has another one than an empty file.
     """
-    places = map(Path, files)
-    contents = (file.read_bytes() if file.is_file() else b"no file" for file in places)
+    contents = (file.read_bytes() if file.is_file() else b"no file" for file in map(Path, files))
     return hashlib.sha256(
         b"".join(hashlib.sha256(content).digest() for content in contents)
     ).hexdigest()[:16]
@@ -283,5 +278,5 @@ def compute_content_digest(*files: str) -> str:
 @cache
 def name_state(module: str, file: str) -> str:
     """Return a name of the current state of a module, ours or the user's."""
-    ours = module.split(".")[0] == ROOT and _find_file(_read_module(module)) is not None
+    ours = module.split(".")[0] == ROOT and _find_file(_read_module(module))
     return f"{Path(file).stem}-{compute_source_digest(module if ours else file)}"

@@ -224,7 +224,7 @@ def _describe_fault(fault: Any, field: FieldInfo | None) -> str:
 # Types of values. Numbers stay as they are written: 20 is part of names, and 20.0 another one.
 
 
-def build_value_type(fits: Callable[[Any], bool], form: str) -> PlainValidator:
+def build_value_type(fits: Callable[[Any], bool], form: str) -> Any:
     """Return a type of single value that is kept as written. form: what is expected, for
     messages.
     """
@@ -234,7 +234,7 @@ def build_value_type(fits: Callable[[Any], bool], form: str) -> PlainValidator:
             raise build_expectation(form)
         return entry
 
-    return PlainValidator(check)
+    return Annotated[Any, PlainValidator(check)]
 
 
 def is_number(entry: Any) -> bool:
@@ -265,9 +265,9 @@ def build_number_type(**limits: float | None) -> Any:
     return Annotated[float, Field(**given), WrapValidator(_keep_as_written)]
 
 
-def limit_whole(low: int, high: int) -> Any:
-    """Return a pydantic field for a whole number from `low` to `high`."""
-    return Field(ge=low, le=high)
+def build_whole_type(low: int, high: int) -> Any:
+    """Return a type of whole number from `low` to `high`."""
+    return Annotated[int, Field(ge=low, le=high)]
 
 
 Number, Positive, NotNegative = (
@@ -275,26 +275,22 @@ Number, Positive, NotNegative = (
     build_number_type(gt=0, ge=None),
     build_number_type(ge=0),
 )
-Whole = Annotated[int, limit_whole(0, MOST)]
-Count = Annotated[int, limit_whole(1, MOST)]
-Decimals = Annotated[int, limit_whole(0, 15)]
-Flag = bool
-Line = Annotated[str, build_value_type(is_line, "one line of text, not blank")]
-Setting = Annotated[
-    str | float | bool | None,
-    build_value_type(
-        lambda entry: (
-            entry is None
-            or is_line(entry)
-            or (isinstance(entry, int | float) and not math.isnan(entry))
-        ),
-        "a word, a number, true or false",
+Whole: Any = build_whole_type(0, MOST)
+Count: Any = build_whole_type(1, MOST)
+Decimals: Any = build_whole_type(0, 15)
+Line: Any = build_value_type(is_line, "one line of text, not blank")
+Setting: Any = build_value_type(
+    lambda entry: (
+        entry is None
+        or is_line(entry)
+        or (isinstance(entry, int | float) and not math.isnan(entry))
     ),
-]
+    "a word, a number, true or false",
+)
 """A value of a planner's setting, which may be infinite, or of a column."""
 
 
-def match_text(pattern: str, form: str) -> PlainValidator:
+def build_text_type(pattern: str, form: str) -> Any:
     """Return a type of text that a regular expression matches as a whole."""
     return build_value_type(
         lambda entry: isinstance(entry, str) and bool(re.fullmatch(pattern, entry)),
@@ -302,13 +298,10 @@ def match_text(pattern: str, form: str) -> PlainValidator:
     )
 
 
-Name = Annotated[
-    str,
-    match_text(
-        r"[a-z][a-z0-9_]{0,99}",
-        "a name of lower-case letters, digits and _ that begins with a letter",
-    ),
-]
+Name: Any = build_text_type(
+    r"[a-z][a-z0-9_]{0,99}",
+    "a name of lower-case letters, digits and _ that begins with a letter",
+)
 
 
 def convert_to_list(entry: Any) -> list:
@@ -377,9 +370,9 @@ def build_choice_type(key: str, models: dict[str, type[Model]]) -> PlainValidato
     return PlainValidator(check)
 
 
-def build_mapping_type(mapping: Any, other: Any) -> PlainValidator:
+def build_mapping_type(mapping: Any, other: Any) -> Any:
     """Return a type of value that is a mapping of one type, or a value of another type."""
-    return _build_either_type(dict, mapping, other)
+    return Annotated[Any, _build_either_type(dict, mapping, other)]
 
 
 # Names defined elsewhere.
@@ -393,20 +386,25 @@ class Names(NamedTuple):
     what: str
 
 
-Metric = Annotated[Name, Names("metric")]
-Statistic = Annotated[Name, Names("statistic")]
-Column = Annotated[Name, Names("column")]
+def build_name_type(what: str, form: Any = Name) -> Any:
+    """Return a type of value, of the type `form`, that names something defined elsewhere."""
+    return Annotated[form, Names(what)]
+
+
+Metric = build_name_type("metric")
+Statistic = build_name_type("statistic")
+Column = build_name_type("column")
 """A column that is known before a run and so identifies runs."""
-NumberColumn = Annotated[Name, Names("number column")]
+NumberColumn = build_name_type("number column")
 """A column of numbers that is known before a run."""
-Quantity = Annotated[Name, Names("quantity")]
+Quantity = build_name_type("quantity")
 """Any column of numbers."""
-Repeat = Annotated[Whole, Names("repeat")]
-PrintedTable = Annotated[Line, Names("printed table")]
-Experiment = Annotated[Name, Names("experiment")]
-Workspace = Annotated[Name, Names("workspace")]
-Function = Annotated[Name, Names("function")]
-Where = Annotated[dict[Column, Values], Names("where")]  # type: ignore[valid-type]
+Repeat = build_name_type("repeat", Whole)
+PrintedTable = build_name_type("printed table", Line)
+ExperimentName = build_name_type("experiment")
+WorkspaceName = build_name_type("workspace")
+Function = build_name_type("function")
+Where = build_name_type("where", dict[Column, Values])  # type: ignore[valid-type]
 Arguments = dict[Name, Any]
 """Keyword-only arguments of a study's function; `checks` compares them with its annotations."""
 ARGUMENTS = (

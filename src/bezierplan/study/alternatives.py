@@ -33,14 +33,14 @@ def find_default(study: Study, assumption: AssumptionEntry) -> Any:
     setting, methods = assumption.setting, study.list_governed_methods(assumption)
     if setting is None:
         return assumption.default
-    used = {}
-    for name in methods:
-        settings = [study.problems[problem].settings for problem in assumption.problems]
-        values = [each[setting] for each in settings if setting in each]
-        open_there = values and setting not in study.methods[name].settings
-        used[name] = values[0] if open_there else study.resolve_settings(name)[setting]
-    shared = [used[name] for name in methods if setting not in study.methods[name].settings]
-    return used if assumption.methods else next(iter([*shared, *used.values()]), None)
+    settings = [study.problems[problem].settings for problem in assumption.problems]
+    values = [each[setting] for each in settings if setting in each]
+    shared = [name for name in methods if setting not in study.methods[name].settings]
+    used = {
+        name: values[0] if values and name in shared else study.resolve_settings(name)[setting]
+        for name in methods
+    }
+    return used if assumption.methods else next((used[name] for name in [*shared, *methods]), None)
 
 
 def apply_values(study: Study, values: dict[str, Any]) -> Study:
@@ -214,9 +214,8 @@ def limit_runs(study: Study) -> Study:
     }
     experiments = {}
     for name, content in study.experiments.items():
-        fields = [problems[each].layouts for each in content.problems if problems[each].layouts]
-        layouts = max((max(each.values()) for each in fields), default=1)
-        most = FEW // layouts
+        layouts = [n for each in content.problems for n in (problems[each].layouts or {}).values()]
+        most = FEW // max(layouts, default=1)
         # `fewer` could ask for more runs than the limit.
         experiments[name] = content.but(
             repeats=_limit(content.repeats, most), chunk=_limit(content.chunk, most), fewer={}

@@ -6,11 +6,11 @@ import difflib
 import inspect
 import itertools
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from pydantic import Field, create_model
 
@@ -52,7 +52,7 @@ performed, so a setting of that name adds nothing.
 class Follows(Exception):
     """A fault that follows from one that is told already, so that no line tells it."""
 
-    lines: ClassVar[list[str]] = []
+    lines = ()
 
 
 class Checks:
@@ -62,8 +62,7 @@ class Checks:
     omissions: section and name of entries that are left out because they are not valid.
     """
 
-    def __init__(self, study: Study, omissions: Iterable[tuple[str, str]] = ()) -> None:
-        omissions = {*omissions}
+    def __init__(self, study: Study, omissions: Sequence[tuple[str, str]] = ()) -> None:
         self.study, self.invalid = study, {name for _, name in omissions}
         # A method with a fault may have any settings.
         self.complete = "methods" not in {section for section, _ in omissions}
@@ -84,7 +83,7 @@ class Checks:
             "problem": study.problems,
             "drawn problem": study.every_problem(),
             "method": study.methods,
-            "own method": study.methods.keys() - study.baselines.keys(),
+            "own method": study.methods.keys() - study.baselines,
             "baseline": study.baselines,
             "policy": study.policies,
             "function": study_code.load_functions(study.code_for("functions")),
@@ -240,7 +239,7 @@ class Checks:
         if not self.complete:
             return
         check_all(study.of_planners, planners, "settings")
-        check_all(study.settings.keys() - study.of_planners.keys(), used, "settings")
+        check_all(study.settings.keys() - study.of_planners, used, "settings")
         for planner, settings in study.of_planners.items():
             check_all(
                 settings, study.read_accepted_settings(planners[planner]), f"settings: {planner}"
@@ -433,10 +432,12 @@ class Checks:
     def check_table(self, name: str, table: TableEntry) -> None:
         """Check that the names of a table exist, and that its file of published numbers fits it."""
         self.check_names(table)
-        for number, entry in enumerate(table.values if isinstance(table, Pivot) else []):
+        if not isinstance(table, Pivot):
+            return
+        for number, entry in enumerate(table.values):
             with self.at("values", str(number)):
                 check_share(entry)
-        if isinstance(table, Pivot) and table.published:
+        if table.published:
             runs = self.design(table.experiment)
             published.check(self.study, runs, table)
             runs.check_where(table.primary, "primary")

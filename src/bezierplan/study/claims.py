@@ -6,7 +6,7 @@ each kind of check.
 """
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
@@ -16,18 +16,18 @@ from bezierplan.schema.model import (
     Metric,
     Model,
     Name,
-    Names,
     Setting,
     Where,
     build_error,
     build_list_type,
     build_mapping_type,
-    match_text,
+    build_name_type,
+    build_text_type,
     show_value,
 )
 from bezierplan.study.experiments import Problems
 
-AssumptionId = Annotated[str, match_text(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")]
+AssumptionId = build_text_type(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")
 
 
 class ClaimsFile(Model):
@@ -43,7 +43,7 @@ class AssumptionEntry(Model):
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
     detail: Line = Field(description="what the paper leaves open, one line")
-    default: Annotated[Any, build_mapping_type(dict[Name, Setting], Setting)] = Field(
+    default: build_mapping_type(dict[Name, Setting], Setting) = Field(
         None,
         description="the value that runs use; left out for a setting, whose value stands in "
         "`experiments.yaml`",
@@ -62,7 +62,7 @@ class AssumptionEntry(Model):
         "then are no readings",
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
-    methods: build_list_type(Annotated[Name, Names("method")]) = Field(
+    methods: build_list_type(build_name_type("method")) = Field(
         [], description="the methods for which alone the alternatives of a setting are"
     )
     problems: Problems = Field(
@@ -100,13 +100,10 @@ class AssumptionEntry(Model):
 class ReadingEntry(Model):
     """A joint reading: another program that a careful reader of the paper could have written."""
 
-    name: Annotated[
-        str,
-        match_text(
-            r"[A-Za-z0-9.-]+(,? [A-Za-z0-9.-]+){0,9}",
-            "a few words of letters, digits, . and -, with single spaces between them",
-        ),
-    ] = Field(description="words that a reader of the tables understands, such as weak rivals")
+    name: build_text_type(
+        r"[A-Za-z0-9.-]+(,? [A-Za-z0-9.-]+){0,9}",
+        "a few words of letters, digits, . and -, with single spaces between them",
+    ) = Field(description="words that a reader of the tables understands, such as weak rivals")
     values: dict[AssumptionId, Setting] = Field(
         description="id of an assumption → one of its alternatives; all of them hold at once",
         min_length=1,

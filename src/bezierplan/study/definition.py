@@ -104,13 +104,9 @@ class Study(Experiments, ArtefactsFile):
 
     def list_reconstructed_workspaces(self, table: Pivot) -> list[str]:
         """Return the workspaces of a table whose maps the paper does not print, drawn ones too."""
-        workspaces = {
-            name: self.problems[problem].workspace
-            for problem in self.experiments[table.experiment].problems
-            for name in self.layouts_of(problem, "full")
-        }
-        shown = convert_to_list(table.where.get("problem", [*workspaces]))
-        names = sorted({workspaces[name] for name in shown})
+        problems = self.problems_of(table.experiment, "full")
+        shown = convert_to_list(table.where.get("problem", [*problems]))
+        names = sorted({problems[name]["workspace"] for name in shown})
         return [name for name in names if self.workspaces[name].origin == "reconstructed"]
 
     def own_methods(self, experiment: str, artefact: str) -> list[str]:

@@ -1,6 +1,5 @@
 """Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
-import itertools
 import re
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -16,43 +15,40 @@ from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Count,
+    ExperimentName,
     Line,
     Model,
     Name,
-    Names,
-    Number,
     Positive,
     Setting,
     Whole,
+    WorkspaceName,
     build_choice_type,
     build_error,
     build_list_type,
     build_mapping_type,
+    build_name_type,
     build_number_type,
-    limit_whole,
-    match_text,
+    build_text_type,
+    build_whole_type,
     parse,
 )
-from bezierplan.schema.model import Experiment as ExperimentName
-from bezierplan.schema.model import Workspace as WorkspaceName
-from bezierplan.workspaces.kinds import FileName, Workspace, kinds, of_length
+from bezierplan.workspaces.kinds import FileName, Workspace, build_numbers_type, kinds
 
 SCALES = ("smoke", "full", "extended")
 
 Settings = dict[Name, Setting]
-SettingsByPlanner = dict[FileName, Annotated[Any, build_mapping_type(Settings, Setting)]]
+SettingsByPlanner = dict[FileName, build_mapping_type(Settings, Setting)]
 """Settings of all planners, and under the name of a planner its own."""
 PART = r"[A-Za-z0-9_.+-]+"
 """The form of a value that is part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
-Part = Annotated[str, match_text(PART, PART_EXPECTED)]
+Part = build_text_type(PART, PART_EXPECTED)
 Scales = Annotated[dict[Literal[SCALES], Count], Field(min_length=len(SCALES))]
 """A number for each scale."""
-ProblemName = Annotated[
-    str, match_text(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
-]
-Problems = build_list_type(Annotated[ProblemName, Names("problem")])
-Point = Annotated[list[Number], of_length(2, "[x, y]")]
+ProblemName = build_text_type(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
+Problems = build_list_type(build_name_type("problem", ProblemName))
+Point = build_numbers_type(2, "[x, y]")
 
 
 class Method(Model):
@@ -65,12 +61,12 @@ class Method(Model):
     settings: Settings = Field(
         {}, description="settings of this method alone, by name; they take precedence"
     )
-    policy: Annotated[Name, Names("policy")] = Field(
+    policy: build_name_type("policy") = Field(
         None,
         description="the name of a policy: needed in experiments in dynamic environments, refused "
         "in others",
     )
-    variant_of: Annotated[Name, Names("method")] = Field(
+    variant_of: build_name_type("method") = Field(
         None, description="the method whose published numbers this one is compared with"
     )
 
@@ -100,7 +96,7 @@ class ProblemEntry(Model):
         description="how many a workspace drawn at random has, for smoke, full and extended; "
         "column `layout`",
     )
-    obstacles: build_list_type(Annotated[int, limit_whole(0, 100_000)]) = Field(
+    obstacles: build_list_type(build_whole_type(0, 100_000)) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles "
         "(of `random_circles` the first so many of a "
@@ -108,7 +104,7 @@ class ProblemEntry(Model):
         "time (`random_changing_cells`); one problem "
         "for each of them and each layout; column `obstacles`",
     )
-    side: Annotated[int, limit_whole(1, 5000)] = Field(
+    side: build_whole_type(1, 5000) = Field(
         None,
         description="the side of a random field or of a map of blocks in cells, a whole "
         "number from 1 to 5000",
@@ -137,9 +133,7 @@ class Experiment(Model):
     """Problems × varied values × methods × repeats."""
 
     problems: Problems = Field(description="a list of problems")
-    methods: build_list_type(Annotated[Name, Names("own method")]) = Field(
-        description="a list of methods"
-    )
+    methods: build_list_type(build_name_type("own method")) = Field(description="a list of methods")
     vary: dict[Name, build_list_type(Setting)] = Field(
         {}, description="setting → list of values; every combination is run"
     )
@@ -173,11 +167,10 @@ class Experiment(Model):
         """
         for scale in SCALES:
             if self.chunk[scale] > self.repeats[scale]:
-                most = (
-                    f"expected at most {self.repeats[scale]}, the repeats, since a chunk "
-                    "always runs whole"
+                raise build_error(
+                    f"chunk: {scale}: {self.chunk[scale]}: expected at most {self.repeats[scale]}, "
+                    "the repeats, since a chunk always runs whole"
                 )
-                raise build_error(f"chunk: {scale}: {self.chunk[scale]}: {most}")
         chunk, most = self.chunk["extended"], self.repeats["extended"]
         for factor, fewer in self.fewer.items():
             for name, count in fewer.items():
@@ -229,8 +222,8 @@ class FamilyEntry(Model):
 class BaselineEntry(Model):
     """The baseline with which the summary compares a study's methods."""
 
-    baseline: Annotated[Name, Names("baseline")] = Field(description="a baseline")
-    proposed: Annotated[Name, Names("own method")] = Field(
+    baseline: build_name_type("baseline") = Field(description="a baseline")
+    proposed: build_name_type("own method") = Field(
         None, description="the method that the paper proposes"
     )
     experiments: build_list_type(ExperimentName) = Field(
@@ -249,7 +242,7 @@ class Paper(Model):
 
     title: Line = Field(description="one line")
     authors: build_list_type(Line) = Field(description="a list of names")
-    year: Annotated[int, limit_whole(1800, 2200)] = Field(None, description="a whole number")
+    year: build_whole_type(1800, 2200) = Field(None, description="a whole number")
     journal: Line = Field(None, description="where it appeared")
     doi: Line = Field(None, description="its DOI, such as 10.1609/aiide.v11i1.12808")
     link: Line = Field(None, description="where it can be read")
@@ -377,7 +370,7 @@ class Experiments(ExperimentsFile):
         kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
         for name, baseline in self.baselines.items():
             module = load_planner(self.planner(name))
-            varied = content.vary.keys() & self.read_accepted_settings(name).keys()
+            varied = content.vary.keys() & self.read_accepted_settings(name)
             served = kinds <= set(getattr(module, "workspaces", kinds))
             if served and not varied and moves == bool(baseline.policy):
                 methods.append(name)
@@ -419,9 +412,8 @@ class Experiments(ExperimentsFile):
         same = content.plain("layouts", "obstacles")
         return {
             f"{problem}_{layout}_{obstacles}": same | {"layout": layout, "obstacles": obstacles}
-            for layout, obstacles in itertools.product(
-                range(content.layouts[scale]), content.obstacles
-            )
+            for layout in range(content.layouts[scale])
+            for obstacles in content.obstacles
         }
 
     def every_problem(self) -> dict[str, dict]:

@@ -89,7 +89,7 @@ def _list_problems(
     """Return the places of an experiment's problems that have the repeat `first`, by name. Each has
     those of its settings that the method leaves open.
     """
-    accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings.keys()
+    accepted = study.read_accepted_settings(method).keys() - study.methods[method].settings
     met = {}
     for name, problem in study.problems_of(experiment, scale, first).items():
         settings = {
@@ -199,7 +199,7 @@ def build_labels(study: Study, artefact: str) -> dict[str, str]:
         for problem in (study.problems[each] for each in content.problems):
             shown |= {problem.workspace, problem.route}
     # A label that is not shown must not make the job run again.
-    hidden = (study.methods.keys() | study.problems.keys() | study.workspaces.keys()) - shown
+    hidden = {*study.methods, *study.problems, *study.workspaces} - shown
     return {name: label for name, label in study.labels.items() if name not in hidden} | printed
 
 
@@ -235,8 +235,8 @@ def build_table_without_runs(study: Study, scale: str, table: str) -> TableWitho
 
 def build_latex(study: Study, scale: str, table: str) -> Latex:
     """Build the job that typesets a table."""
-    spec, printed = study.tables[table], study.find_published_tables().get(table)
-    heads = len(printed.index) if printed else 0
+    spec = study.tables[table]
+    heads = len(spec.index) if table in study.find_published_tables() else 0
     caption = build_caption(study, table, scale).write()
     return Latex(f"{study.key}-{table}", caption, spec.note, heads)
 

@@ -158,7 +158,7 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     if not lines or not lines[0]:
         raise ValueError("the map is empty; expected lines of . (free) and # (occupied)")
     for number, line in enumerate(lines, start=1):
-        unknown = line.replace(".", "").replace("#", "")
+        unknown = line.strip(".#")
         if unknown:
             raise ValueError(
                 f"line {number}: unknown character {unknown[0]!r}; "

@@ -62,8 +62,7 @@ def describe(
         if name not in kinds()[kind].model_fields:
             raise ValueError(f"{name}: not for maps of kind {kind}, as {file} is")
     if kind == "raster" and "cell" not in description:
-        margin = {"margin": description["margin"]} if "margin" in description else {}
-        x_low, x_high, y_low, y_high = read(file, home | {"kind": "polygons"} | margin).bounds
+        x_low, x_high, y_low, y_high = read(file, home | description | {"kind": "polygons"}).bounds
         description["cell"] = max(x_high - x_low, y_high - y_low) / CELLS
     # The user's own file and unit are left out: limits on their names are those of studies.
     parse(kinds()[kind], home | {"unit": "m", "file": "map"} | description)

@@ -11,7 +11,7 @@ first row is the top of the map.
 import difflib
 import math
 from pathlib import Path, PureWindowsPath
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -45,21 +45,22 @@ def _is_origin(entry: Any) -> bool:
         return False
 
 
+Origin: Any = build_value_type(_is_origin, "[x, y, 0], a map that is not turned")
+
+
 class Content(Model):
     """Keys of a map_server YAML file."""
 
     image: Line = Field(description="the name of an image beside it")
     resolution: Positive = Field(description="units per pixel, a number above 0")
-    origin: Annotated[list, build_value_type(_is_origin, "[x, y, 0], a map that is not turned")] = (
-        Field(description="[x, y, 0], the lower left pixel's corner and no yaw")
-    )
+    origin: Origin = Field(description="[x, y, 0], the lower left pixel's corner and no yaw")
     negate: Literal[0, 1, False, True] = Field(0, description="0 (dark is occupied) or 1")
     occupied_thresh: NotNegative = Field(0.65, description="a number of at least 0")
     free_thresh: NotNegative = Field(0.196, description="a number of at least 0")
     mode: Literal["trinary", "scale", "raw"] = Field("trinary", description="how pixels are read")
 
 
-def read(file: Path, folder: Path, unit: str, unknown: Unknown = "occupied") -> Grid:
+def read(file: Path, folder: Path, unit: str, unknown: Unknown) -> Grid:
     """Read the grid of a map_server YAML file, one cell per pixel.
 
     folder: where the image must lie.
@@ -69,7 +70,7 @@ def read(file: Path, folder: Path, unit: str, unknown: Unknown = "occupied") -> 
     return _build_grid(find_image(file, folder), _read_content(file), unit, unknown)
 
 
-def read_image(file: Path, resolution: float, unit: str, unknown: Unknown = "occupied") -> Grid:
+def read_image(file: Path, resolution: float, unit: str, unknown: Unknown) -> Grid:
     """Read the grid of an image alone, with its lower left corner at 0, 0; dark pixels are
     occupied.
 

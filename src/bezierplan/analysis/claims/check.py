@@ -13,7 +13,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from bezierplan.analysis.metric import METRICS
 from bezierplan.schema.model import (
     Column,
-    Experiment,
+    ExperimentName,
     Line,
     Metric,
     Model,
@@ -31,13 +31,10 @@ from bezierplan.schema.model import (
 SIDES = {"lower": -1, "higher": 1, "down": -1, "up": 1, "at_most": -1, "at_least": 1}
 """A claimed direction -> the sign of the effects that lie there."""
 
-Group = Annotated[
-    str | float,
-    build_value_type(
-        lambda given: is_line(given) or is_number(given),
-        "a value of the column `across`, or rest",
-    ),
-]
+Group = build_value_type(
+    lambda given: is_line(given) or is_number(given),
+    "a value of the column `across`, or rest",
+)
 Columns = build_list_type(Column)
 
 
@@ -53,7 +50,7 @@ class PublishedMargin(Model):
 
 # Types of keys shared by several kinds of check, with their descriptions.
 Experiments = Annotated[
-    build_list_type(Experiment, least=2, single=True),
+    build_list_type(ExperimentName, least=2, single=True),
     Field(description="the name of an experiment, or a list of at least two"),
 ]
 Work = Annotated[
@@ -257,7 +254,7 @@ class WithMargin(OfRuns):
         "absolute",
         description="absolute (left out: this), or relative to the value of the other group",
     )
-    margin: Annotated[Any, build_mapping_type(PublishedMargin, Positive)] = Field(
+    margin: build_mapping_type(PublishedMargin, Positive) = Field(
         description="the smallest effect that matters: a number above 0, or {published: share}, "
         "that share of the other group's value (the share itself for a metric that is true or "
         "false), or the printed difference of the same cells if it is smaller"

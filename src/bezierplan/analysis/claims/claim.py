@@ -10,14 +10,13 @@ from bezierplan.analysis.claims.kinds import list_kinds
 from bezierplan.schema.model import (
     Line,
     Model,
-    Name,
-    Names,
     Values,
     build_choice_type,
     build_error,
     build_list_type,
+    build_name_type,
+    build_text_type,
     convert_to_list,
-    match_text,
 )
 
 MOST_CHECKS = 100
@@ -25,7 +24,7 @@ MOST_CHECKS = 100
 MOST_VARIANTS = 100
 """Combinations of the values of a claim's variants, each a row of its own."""
 
-ClaimId = Annotated[str, match_text(r"C[1-9][0-9]*", "C and a number, such as C1")]
+ClaimId = build_text_type(r"C[1-9][0-9]*", "C and a number, such as C1")
 
 
 class Claim(Model):
@@ -36,7 +35,7 @@ class Claim(Model):
     statement: Line = Field(
         description="one plain sentence of at most 160 characters, in your own words"
     )
-    artefact: build_list_type(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
+    artefact: build_list_type(build_name_type("artefact"), least=2, single=True) = Field(
         [],
         description="the table or figure that shows it, or a list of them; the groups that `rest` "
         "and the metric rank range over are theirs",

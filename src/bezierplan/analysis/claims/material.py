@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic import Field
 
 from bezierplan.analysis.table_kinds import PublishedFile
-from bezierplan.schema.model import Experiment, Metric, Model, Name, Where
+from bezierplan.schema.model import ExperimentName, Metric, Model, Name, Where
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +23,7 @@ class Display(Model):
     number is compared.
     """
 
-    experiment: Experiment
+    experiment: ExperimentName
     where: Where = Field({})
     published: PublishedFile = None
     reads: dict[Name, Metric] = Field({})

@@ -263,7 +263,7 @@ def _describe_claim(study: str, claim: Row, comparisons: list[Row], content: Stu
         check = checks.get(row["check"])
         row["reference"] = sentences.find_threshold(check) if check else 0.0
         row["name"] = sentences.name_comparison(row, check, content.labels)
-    there = content.tables.keys() | content.figures.keys()
+    there = {*content.tables, *content.figures}
     return claim | {
         "address": build_address(study, claim["id"]),
         "rule": sentences.describe_count(described, claim["verdict"], claim["holds"]),

@@ -29,8 +29,7 @@ from bezierplan.machine.modules import find_kinds, load_module
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
-    Experiment,
-    Flag,
+    ExperimentName,
     Function,
     Line,
     Metric,
@@ -39,7 +38,7 @@ from bezierplan.schema.model import (
     Quantity,
     Repeat,
     Where,
-    Workspace,
+    WorkspaceName,
     build_error,
     build_list_type,
     convert_to_list,
@@ -124,12 +123,12 @@ class Panel(Model, ABC):
 class RunsPanel(Panel):
     """A panel that shows runs."""
 
-    experiment: Experiment = Field(description="the name of an experiment")
+    experiment: ExperimentName = Field(description="the name of an experiment")
     where: Where = Field(
         {},
         description="column of the runs table → value or list of values: the runs that are shown",
     )
-    context: Flag = Field(
+    context: bool = Field(
         False,
         description="whether to draw also what the paper does not show, true or false: the "
         "exact shortest path or its length, the best known one of the same kind, where pieces of a "
@@ -159,7 +158,7 @@ class TablePanel(Panel):
     published: build_list_type(PrintedTable, single=True) = Field(
         [], description="the name of a published table, or a list of names"
     )
-    workspace: Workspace = Field(None, description="the name of a workspace")
+    workspace: WorkspaceName = Field(None, description="the name of a workspace")
     arguments: Arguments = Field({}, description=ARGUMENTS)
     where: Where = Field(
         {}, description="column of the table → value or list of values: the rows that are shown"

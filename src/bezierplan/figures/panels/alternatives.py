@@ -5,7 +5,7 @@ single alternative to details that the paper leaves open.
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
@@ -14,7 +14,7 @@ from bezierplan.analysis import naming
 from bezierplan.analysis.claims.claim import ClaimId
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources
-from bezierplan.schema.model import Names
+from bezierplan.schema.model import build_name_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -48,7 +48,7 @@ _SHARES = {"all": 1.0, "some": 0.0, "none": 0.0, "as printed": "nan"}
 class Options(Panel):
     """Keys of a panel that shows a claim under all alternatives."""
 
-    claim: Annotated[ClaimId, Names("claim")] = Field(
+    claim: build_name_type("claim", ClaimId) = Field(
         description="the id of a claim: its decisive comparison is drawn, by default and under "
         "each alternative of `assumptions.yaml` that no sentence excludes, of few runs"
     )

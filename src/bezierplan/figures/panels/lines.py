@@ -27,7 +27,7 @@ from bezierplan.figures.panels import (
 )
 from bezierplan.schema.model import (
     Column,
-    Experiment,
+    ExperimentName,
     Function,
     Metric,
     NumberColumn,
@@ -56,7 +56,7 @@ _MOST_JOINED = 100
 class Options(MetricPanel, TablePanel):
     """Keys of a panel of lines, which are of runs or of a table."""
 
-    experiment: Experiment = Field(None, description="the name of an experiment")
+    experiment: ExperimentName = Field(None, description="the name of an experiment")
     data: Function = Field(
         None,
         description="instead of experiment, the name of a function of the study's module that "

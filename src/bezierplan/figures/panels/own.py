@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel
-from bezierplan.schema.model import Metric, Name, Names, build_list_type
+from bezierplan.schema.model import Metric, build_list_type, build_name_type
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Options(RunsPanel):
-    function: Annotated[Name, Names("drawing")] = Field(
+    function: build_name_type("drawing") = Field(
         description="the name of a function of the study's `panels.py`, called with axes of "
         "matplotlib, a table of the runs (method, problem, condition, repeat and metrics), and by "
         "method keywords of `axes.plot`: its colour, marker and label in all figures"

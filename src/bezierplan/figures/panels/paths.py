@@ -6,7 +6,7 @@ Or several paths in one workspace, a run chosen for each value of a column.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -21,16 +21,15 @@ from bezierplan.geometry import curves
 from bezierplan.running.columns import Row
 from bezierplan.schema.model import (
     Column,
-    Experiment,
+    ExperimentName,
     Line,
     Metric,
     Model,
-    Names,
-    Number,
     PrintedTable,
     build_error,
+    build_name_type,
 )
-from bezierplan.workspaces.kinds import of_length
+from bezierplan.workspaces.kinds import build_numbers_type
 from bezierplan.workspaces.problem import Path
 
 if TYPE_CHECKING:
@@ -131,7 +130,7 @@ class Explicit(Model):
     """A path given by its points, not by a run."""
 
     curve: Literal[tuple(curves.CURVES)] = Field(description="the kind of a curve")
-    points: list[Annotated[list[Number], of_length(2, "[x, y]")]] = Field(
+    points: list[build_numbers_type(2, "[x, y]")] = Field(
         description="a list of at least two [x, y]", min_length=2
     )
 
@@ -144,7 +143,7 @@ class Options(RunsPanel):
 
     one = ("problem", "method")
 
-    experiment: Experiment = Field(None, description="the name of an experiment")
+    experiment: ExperimentName = Field(None, description="the name of an experiment")
     pick: Picked = None
     explicit: Explicit = Field(
         None, description="instead of experiment and pick, {curve, points}: a path without a run"
@@ -162,7 +161,7 @@ class Options(RunsPanel):
         description="with hue, the metric whose value is written for each path; left out: length",
     )
     letters: workspaces.Letters = None
-    changed_from: Annotated[Line, Names("problem of runs")] = Field(
+    changed_from: build_name_type("problem of runs", Line) = Field(
         None,
         description="the name of another problem of the experiment, on cells as many: those that "
         "differ from it are marked",
@@ -172,8 +171,8 @@ class Options(RunsPanel):
         description="the name of a published table whose shortest length is given next to the "
         "run's",
     )
-    view: Annotated[list[Number], of_length(4, "[lowest x, highest x, lowest y, highest y]")] = (
-        Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]")
+    view: build_numbers_type(4, "[lowest x, highest x, lowest y, highest y]") = Field(
+        None, description="what is seen: [lowest x, highest x, lowest y, highest y]"
     )
 
     def source(self, sources: Sources) -> Results | None:

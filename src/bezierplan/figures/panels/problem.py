@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.schema.model import Line, Names
+from bezierplan.schema.model import Line, build_name_type
 from bezierplan.workspaces.problem import Problem
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Options(Panel):
-    problem: Annotated[Line, Names("drawn problem")] = Field(
+    problem: build_name_type("drawn problem", Line) = Field(
         description="the name of a problem, followed by the number of a layout and that of its "
         "obstacles if it has layouts, such as `case1_0_20`"
     )

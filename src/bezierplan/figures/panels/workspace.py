@@ -12,8 +12,7 @@ from pydantic import Field
 from bezierplan.analysis.naming import format_amount
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources
-from bezierplan.schema.model import Flag, Line
-from bezierplan.schema.model import Workspace as Described
+from bezierplan.schema.model import Line, WorkspaceName
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
@@ -79,12 +78,12 @@ _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
 class Options(Panel):
-    workspace: Described = Field(description="the name of a workspace")
+    workspace: WorkspaceName = Field(description="the name of a workspace")
     numbers: Literal["all", "free", "none"] = Field(
         "none",
         description="which cells show their number: all, free or none (left out: this)",
     )
-    embed: Flag = Field(
+    embed: bool = Field(
         False,
         description="whether a grid is put into one of a power "
         "of two of rows and columns, true or false",

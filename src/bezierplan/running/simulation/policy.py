@@ -1,14 +1,13 @@
 """The policy of a robot: its decisions when its world changes."""
 
 import math
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from bezierplan.schema.model import (
     LARGEST,
     Count,
-    Flag,
     Model,
     NotNegative,
     Positive,
@@ -16,17 +15,14 @@ from bezierplan.schema.model import (
     is_number,
 )
 
-Margins = Annotated[
-    list[float],
-    build_value_type(
-        lambda given: (
-            isinstance(given, list)
-            and 0 < len(given) <= 100
-            and all(is_number(each) and 0 <= each <= LARGEST for each in given)
-        ),
-        "",
+Margins = build_value_type(
+    lambda given: (
+        isinstance(given, list)
+        and 0 < len(given) <= 100
+        and all(is_number(each) and 0 <= each <= LARGEST for each in given)
     ),
-]
+    "",
+)
 
 
 class Policy(Model):
@@ -42,12 +38,12 @@ class Policy(Model):
         description="of every_step: the number of steps between plans, "
         "a whole number of at least 1; left out: 1",
     )
-    warm: Flag = Field(
+    warm: bool = Field(
         False,
         description="whether a plan starts from the last one, for planners with a function "
         "`resume`; left out: false",
     )
-    waits: Flag = Field(
+    waits: bool = Field(
         True,
         description="whether the robot stops in front of an obstacle on its path, "
         "true or false; left out: true",
@@ -82,7 +78,7 @@ class Policy(Model):
         description="the distance ahead along its path that it checks, in units; left out: all "
         "of it",
     )
-    evades: Flag = Field(
+    evades: bool = Field(
         False,
         description="among circles, whether it makes an evasive manoeuvre where it would stop and "
         "a circle is about to arrive; left out: false",

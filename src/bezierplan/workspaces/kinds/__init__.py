@@ -15,7 +15,6 @@ in absolute value. `length(map)` is the length of the shortest path from cell to
 ends of the problem. All faults are ValueErrors of one line.
 """
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -30,15 +29,16 @@ from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Line,
     Model,
-    Names,
     NotNegative,
     Number,
     Positive,
     build_error,
+    build_name_type,
+    build_text_type,
     build_value_type,
+    build_whole_type,
     is_line,
     is_number,
-    limit_whole,
 )
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.text_file import read_text
@@ -49,23 +49,16 @@ def _is_file_name(entry: Any) -> bool:
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
-FileName = Annotated[
-    str, build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]")
-]
-File = Annotated[FileName, Names("file")]
-Unit = Annotated[
-    str,
-    build_value_type(
-        lambda entry: isinstance(entry, str) and re.fullmatch(r"[^\W\d_]{1,20}", entry) is not None,
-        "letters, 20 at most",
-    ),
-]
+FileName: Any = build_value_type(_is_file_name, "the name of a file, without { } * ? [ ]")
+File: Any = build_name_type("file", FileName)
+Unit: Any = build_text_type(r"[^\W\d_]{1,20}", "letters, 20 at most")
 
 
-def of_length(length: int, form: str) -> AfterValidator:
-    """Build a check of a list of numbers: it must have so many.
+def build_numbers_type(length: int, form: str) -> Any:
+    """Build a type of list of so many numbers. form: what is expected, for messages.
 
-    >>> of_length(2, "[x, y]").func([1, 2])
+    >>> from pydantic import TypeAdapter
+    >>> TypeAdapter(build_numbers_type(2, "[x, y]")).validate_python([1, 2])
     [1, 2]
     """
 
@@ -74,27 +67,20 @@ def of_length(length: int, form: str) -> AfterValidator:
             raise build_error(f"{entry!r}: expected {form}")
         return entry
 
-    return AfterValidator(check)
+    return Annotated[list[Number], AfterValidator(check)]
 
 
-Size = Annotated[
-    float,
-    build_value_type(
-        lambda entry: is_number(entry) and entry >= SMALLEST_FEATURE,
-        f"a number of at least {SMALLEST_FEATURE:g}",
-    ),
-]
+Size: Any = build_value_type(
+    lambda entry: is_number(entry) and entry >= SMALLEST_FEATURE,
+    f"a number of at least {SMALLEST_FEATURE:g}",
+)
 """A side or a radius of something solid, in units."""
 
-Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
-CircleCount = Annotated[int, limit_whole(1, 10_000)]
+Bounds: Any = build_numbers_type(4, "[x low, x high, y low, y high]")
+SmallCount: Any = build_whole_type(1, 10_000)
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
-MARGIN = (
-    "in a file without a border, how far the border lies from the obstacles, in units, a "
-    "number of at least 0"
-)
 UNKNOWN = "whether unknown pixels count as occupied or free"
 CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
@@ -123,6 +109,13 @@ class Workspace(Model):
     )
 
 
+class CellMap(Workspace):
+    """Keys common to workspaces that begin with a map of cells."""
+
+    file: File = Field(description="a map file in the study's folder")
+    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
+
+
 class World(Workspace):
     """Keys common to all worlds, in which obstacles move or cells change."""
 
@@ -131,7 +124,7 @@ class World(Workspace):
     pace: Positive = Field(
         description="how far a robot drives in a step, in units, a number above 0"
     )
-    steps: Annotated[int, limit_whole(1, 10_000)] = Field(
+    steps: SmallCount = Field(
         description="the moment at which every drive in this world ends, "
         "in steps, a whole number from 1 to 10000"
     )

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.schema.model import Model, Positive, build_error
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Size, World, grid
+from bezierplan.workspaces.kinds import CellMap, File, World, grid
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import ChangingCells
@@ -37,13 +37,11 @@ class Change(Model):
         return self
 
 
-class Options(World):
+class Options(CellMap, World):
     """Keys of a workspace of kind `changing_cells`."""
 
     given_kind = "grid"
 
-    file: File = Field(description="a map file in the study's folder")
-    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     changes: list[Change] = Field(
         description="a list of {file, after} or {file, at}, in order of time", min_length=1
     )
@@ -59,9 +57,8 @@ def world(
     from bezierplan.workspaces.worlds import ChangingCells
 
     # Each map is a description of kind `grid`, so it is checked as one.
-    shared = {key: description[key] for key in ("cell", "unit")}
     names = [description["file"], *(change["file"] for change in description["changes"])]
-    maps = tuple(grid.load(shared | {"file": file}, folder) for file in names)
+    maps = tuple(grid.load(description | {"file": file}, folder) for file in names)
     for file, each in zip(names, maps):
         if each.occupied.shape != maps[0].occupied.shape:
             raise ValueError(

@@ -1,24 +1,24 @@
 """Circles in a rectangle."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Number
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.kinds import Bounds, Workspace, of_length
+from bezierplan.workspaces.kinds import Bounds, Workspace, build_numbers_type
 from bezierplan.workspaces.limits import bounds_of, check_gaps, check_numbers, check_thickness
+
+Circle: Any = build_numbers_type(3, "[x, y, radius]")
 
 
 class Options(Workspace):
     """Keys of a workspace of kind `circles`."""
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(
-        description="a list of [x, y, radius]"
-    )
+    circles: list[Circle] = Field(description="a list of [x, y, radius]")
     radius: Number = Field(None, description="one radius for all circles, instead of their own")
 
 

@@ -8,19 +8,15 @@ from pydantic import Field
 
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
+from bezierplan.workspaces.kinds import CellMap, File, naming, text
 from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.text_file import split_lines
 
 
-class Options(Workspace):
+class Options(CellMap):
     """Keys of a workspace of kind `grid`."""
 
-    file: File = Field(description="a map file in the study's folder")
-    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
-    heights: File | None = Field(
-        description="a file of heights in the study's folder", default=None
-    )
+    heights: File = Field(None, description="a file of heights in the study's folder")
 
 
 def load(description: dict, folder: Path) -> Grid:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import Field
 
-from bezierplan.schema.model import Number
 from bezierplan.workspaces import limits, moving
-from bezierplan.workspaces.kinds import REFLECTED, Bounds, World, of_length
+from bezierplan.workspaces.kinds import REFLECTED, Bounds, World, build_numbers_type
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
 
-MovingCircle = Annotated[list[Number], of_length(5, "[x, y, radius, x velocity, y velocity]")]
+MovingCircle: Any = build_numbers_type(5, "[x, y, radius, x velocity, y velocity]")
 
 
 class Options(World):

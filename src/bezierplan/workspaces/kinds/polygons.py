@@ -6,7 +6,7 @@ from pydantic import Field
 
 from bezierplan.schema.model import NotNegative
 from bezierplan.workspaces.geojson import read_geojson
-from bezierplan.workspaces.kinds import MARGIN, File, Workspace, naming, text
+from bezierplan.workspaces.kinds import File, Workspace, naming, text
 from bezierplan.workspaces.polygons import Polygons
 
 
@@ -14,7 +14,11 @@ class Options(Workspace):
     """Keys of a workspace of kind `polygons`."""
 
     file: File = Field(description="a GeoJSON file in the study's folder")
-    margin: NotNegative | None = Field(None, description=MARGIN)
+    margin: NotNegative | None = Field(
+        None,
+        description="in a file without a border, how far the border lies from the obstacles, in "
+        "units, a number of at least 0",
+    )
 
 
 def load(description: dict, folder: Path) -> Polygons:

@@ -2,14 +2,14 @@
 all methods and experiments.
 """
 
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import NotNegative, build_value_type, is_number
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
+from bezierplan.workspaces.kinds import CIRCLES, Bounds, SmallCount, Workspace
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, bounds_of, check_count
 from bezierplan.workspaces.random_field import draw_centres
 from bezierplan.workspaces.seeds import generator
@@ -26,17 +26,20 @@ def _is_radius(entry: Any) -> bool:
     return len(ends) == 2 and all(map(is_number, ends)) and SMALLEST_FEATURE <= ends[0] <= ends[1]
 
 
+Radius: Any = build_value_type(_is_radius, RADIUS)
+
+
 class Options(Workspace):
     """Keys of a workspace of kind `random_circles`."""
 
     drawn_kind = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    radius: Annotated[Any, build_value_type(_is_radius, RADIUS)] = Field(description=RADIUS)
+    radius: Radius = Field(description=RADIUS)
     gap: NotNegative = Field(
         0, description="the least distance of circles from start and target, in units"
     )
-    circles: CircleCount = Field(description=CIRCLES)
+    circles: SmallCount = Field(description=CIRCLES)
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles:

@@ -5,19 +5,16 @@ from typing import Literal
 
 from pydantic import Field
 
-from bezierplan.schema.model import NotNegative
 from bezierplan.workspaces import raster
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, polygons
+from bezierplan.workspaces.kinds import Size, naming, polygons
 
 
-class Options(Workspace):
+class Options(polygons.Options):
     """Keys of a workspace of kind `raster`."""
 
     given_kind = "grid"
 
-    file: File = Field(description="a GeoJSON file in the study's folder")
-    margin: NotNegative | None = Field(None, description=MARGIN)
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     rule: Literal["overlap", "centre"] = Field(
         description="which cells are occupied: "

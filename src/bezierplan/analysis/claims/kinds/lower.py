@@ -40,14 +40,14 @@ from bezierplan.analysis.claims.check import (
 )
 from bezierplan.analysis.claims.effects import Contrast, Finding, Terms
 from bezierplan.analysis.claims.ranks import compare_ranks
-from bezierplan.schema.model import Flag, Positive, build_error, build_list_type
+from bezierplan.schema.model import Positive, build_error, build_list_type
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 class Options(Comparing):
-    paired: Flag = Field(
+    paired: bool = Field(
         None,
         description="whether equal units are compared with each other, true or false; left out: as "
         "the experiment is drawn",

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -41,17 +41,14 @@ class Options(OfRuns):
         description="one of {below: number}, above, at_most, at_least; left out for a metric that "
         "is true or false",
     )
-    threshold: Annotated[
-        Any,
-        build_value_type(
-            lambda given: (
-                given in ("all", "none", "some", "as printed")
-                if isinstance(given, str)
-                else is_number(given) and 0 <= given <= 1
-            ),
-            "",
+    threshold: build_value_type(
+        lambda given: (
+            given in ("all", "none", "some", "as printed")
+            if isinstance(given, str)
+            else is_number(given) and 0 <= given <= 1
         ),
-    ] = Field(
+        "",
+    ) = Field(
         description="a share from 0 to 1, or all, none, some, or as printed: in all runs of an "
         "experiment as large as the paper's"
     )

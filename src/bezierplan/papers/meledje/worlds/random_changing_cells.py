@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.schema.model import Count
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Size, World, grid
+from bezierplan.workspaces.kinds import CellMap, World, grid
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -21,13 +21,11 @@ if TYPE_CHECKING:
 _MOST_CHANGES = 1000
 
 
-class Options(World):
+class Options(CellMap, World):
     """Keys of a workspace."""
 
     drawn_kind = "grid"
 
-    file: File = Field(description="a map file in the study's folder")
-    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     every: Count = Field(
         description="after how many steps as many cells change as a problem has obstacles, a "
         "whole number of at least 1"
@@ -44,7 +42,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """
     from bezierplan.workspaces.worlds import ChangingCells
 
-    first = grid.load({key: description[key] for key in ("unit", "cell", "file")}, folder)
+    first = grid.load(description, folder)
     start, target = random_field.end_cells(first, problem)
     moments = np.arange(
         description["every"], description["steps"], description["every"], dtype=float

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from bezierplan.workspaces import limits, moving
-from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving, Size
+from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, RandomMoving, Size, SmallCount
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ class Options(RandomMoving):
 
     bounds: Bounds = Field(description=REFLECTED)
     radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
-    circles: CircleCount = Field(description=CIRCLES)
+    circles: SmallCount = Field(description=CIRCLES)
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
