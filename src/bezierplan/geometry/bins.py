@@ -46,20 +46,26 @@ def sort_into_bins(edges: np.ndarray) -> Bins:
 @compile_kernel
 def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """Return where the members of each bin begin, and the numbers of its edges, ascending."""
-    # A first entry tells the compiler the type of the lists; it is dropped below.
-    places, passing = [0], [0]
-    for e in range(len(edges)):
-        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
-        for column in range(begin, end + 1):
-            low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-                places.append(number)
-                passing.append(e)
-    bin_of, members = np.array(places[1:]), np.array(passing[1:])
-    # A stable sort: within a bin edges keep their order, so searches find the same one first.
-    order = np.argsort(bin_of, kind="mergesort")
-    first = np.searchsorted(bin_of[order], np.arange(bins.columns * bins.rows + 1))
-    return first, members[order]
+    count = bins.columns * bins.rows
+    first, members = np.zeros(count + 1, np.int64), np.empty(0, np.int64)
+    # A counting sort, since numpy's takes seconds to compile: each bin's edges are counted, then
+    # put there. Within a bin they keep their order, so searches find the same one first.
+    taken = np.zeros(count, np.int64)
+    for is_counted in (False, True):
+        for e in range(len(edges)):
+            begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
+            for column in range(begin, end + 1):
+                low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
+                for number in range(column * bins.rows + low, column * bins.rows + high + 1):
+                    if is_counted:
+                        members[first[number] + taken[number]] = e
+                    taken[number] += 1
+        if not is_counted:
+            for number in range(count):
+                first[number + 1] = first[number] + taken[number]
+                taken[number] = 0
+            members = np.empty(first[count], np.int64)
+    return first, members
 
 
 @allocation_free

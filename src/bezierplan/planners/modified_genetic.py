@@ -34,6 +34,7 @@ from bezierplan.planners.parts.gene_lattice import Field, build_field, build_pol
 from bezierplan.planners.parts.genetic import check_pairs, copy, is_same
 from bezierplan.planners.parts.random_integers import draw_integer
 from bezierplan.planners.parts.settings import NOT_NEGATIVE, SHARE, with_settings
+from bezierplan.planners.parts.sorting import find_first_above, find_largest
 
 extra = (
     "distinct_chromosomes",
@@ -299,7 +300,7 @@ def search(
         wheel = np.cumsum(1.0 / pool.cost[:size])
         # A child that costs more than any parent does not survive, so nobody needs to know by how
         # much; unless equal chromosomes are told by their costs.
-        limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
+        limit = np.inf if rules.diversity == Diversity.unique else find_largest(pool.cost[:size])
         fill, extra_batches, alike = size, -1, True
         # The paper's loop has no other end than a Q below eta, which a pool may never reach,
         # however many children join it. Each batch takes as long as the first, so `most_batches`
@@ -425,12 +426,12 @@ def _select_parents(rng, wheel):
 
     The second is drawn from the wheel without the first one.
     """
-    first = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
+    first = find_first_above(wheel, rng.random() * wheel[-1])
     first = min(first, len(wheel) - 1)
     begin = wheel[first - 1] if first > 0 else 0.0
     share = wheel[first] - begin
     drawn = rng.random() * (wheel[-1] - share)
-    second = np.searchsorted(wheel, drawn if drawn < begin else drawn + share, side="right")
+    second = find_first_above(wheel, drawn if drawn < begin else drawn + share)
     second = min(second, len(wheel) - 1)
     if second == first:
         # Rounding at the edge of the omitted share.

@@ -29,7 +29,7 @@ from bezierplan.planners.parts.settings import (
     convert_to_cells,
     with_settings,
 )
-from bezierplan.planners.parts.sorting import ascending
+from bezierplan.planners.parts.sorting import ascending, find_largest
 from bezierplan.workspaces.ground import (
     MOST_NEIGHBOURS,
     Ground,
@@ -358,7 +358,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
             for i in range(population):
                 parents[i] = order[draw_below(moves, population // 2)]
         # A child has at most the nodes of both parents.
-        children = np.empty((population, 2 * lengths.max()), np.int64)
+        children = np.empty((population, 2 * find_largest(lengths)), np.int64)
         child_lengths = np.empty_like(lengths)
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]

@@ -22,6 +22,7 @@ from bezierplan.geometry.checker.hulls import measure_distance
 from bezierplan.geometry.region import Region, build_region, from_origin
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners import About, Path, Plan, Problem, Range
+from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
@@ -339,7 +340,10 @@ def _list_radii(least, most):
 @compile_kernel
 def _raise_radii(turns, radii, live, level):
     """Return radii (n,) with those of live turns raised to a level, or as wide as the obstacle."""
-    return np.where(live, np.maximum(level, turns.radius), radii)
+    raised = radii.copy()
+    for i in np.flatnonzero(live):
+        raised[i] = max(level, turns.radius[i])
+    return raised
 
 
 @compile_kernel
@@ -356,9 +360,12 @@ def _try(course, radii, live, level):
     if _measure_string(string) > course.limit:
         return _TOO_LONG, 0, len(radii) - 1
     points, part = _draw(course.turns, string)
+    piece = np.empty((1, 4, 2))
     for k in range(len(part)):
-        piece = points[3 * k : 3 * k + 4] - course.origin
-        at = find_first_collision(piece.reshape((1, 4, 2)), course.region)[0]
+        for i in range(4):
+            for axis in range(2):
+                piece[0, i, axis] = points[3 * k + i, axis] - course.origin[axis]
+        at = find_first_collision(piece, course.region)[0]
         if at < np.inf:
             # An arc's own turns are to blame, or those at the nearer end of a leg.
             circle = min(max((part[k] - (at < 0.5)) // 2, 1), string.count)
@@ -408,8 +415,8 @@ def _pull(turns, radii, patient):
                     pull = inward[k, axis] + heading[k + 1, axis] - heading[k, axis]
                 inward[k, axis] = pull
             size = math.hypot(inward[k, 0], inward[k, 1])
-            if size > 0.0:
-                inward[k] /= size
+            for axis in range(2 if size > 0.0 else 0):
+                inward[k, axis] /= size
             if not _place(turns, first[k], last[k], reach[k], inward[k], centres[k]):
                 return String(k, count, first, last, centres, reach, legs, sweeps)
         _separate_circles(turns, first, last, count, reach, side, centres)
@@ -611,12 +618,14 @@ def _draw(turns, string):
     """
     most = string.count * (_MOST_PIECES + 1) + 1
     points, part = np.empty((3 * most + 1, 2)), np.empty(most, np.int64)
-    points[0] = turns.corner[0]
+    copy(turns.corner[0], points[0])
     pieces = 0
     for k in range(1, string.count + 2):
         begin, end = string.legs[k]
         for third in range(1, 4):
-            points[3 * pieces + third] = begin + (end - begin) * (third / 3)
+            for axis in range(2):
+                share = third / 3
+                points[3 * pieces + third, axis] = begin[axis] + (end[axis] - begin[axis]) * share
         part[pieces] = 2 * k
         pieces += 1
         if string.radii[k] == 0.0 or string.sweeps[k] <= 0.0:
@@ -627,7 +636,7 @@ def _draw(turns, string):
         handle = 4 / 3 * math.tan(angle / 4)
         cosine, sine = math.cos(angle), math.sin(angle)
         centre_x, centre_y = string.centres[k]
-        x, y = end - string.centres[k]
+        x, y = end[0] - centre_x, end[1] - centre_y
         for _ in range(arcs):
             along = points[3 * pieces + 1 : 3 * pieces + 4]
             along[0, 0], along[0, 1] = centre_x + x - handle * y, centre_y + y + handle * x
@@ -637,6 +646,6 @@ def _draw(turns, string):
             part[pieces] = 2 * k + 1
             pieces += 1
         # Rounding of the rotations must not leave a gap to the next leg.
-        points[3 * pieces] = string.legs[k + 1, 0]
-    points[3 * pieces] = turns.corner[-1]  # to the last bit
+        copy(string.legs[k + 1, 0], points[3 * pieces])
+    copy(turns.corner[-1], points[3 * pieces])  # to the last bit
     return points[: 3 * pieces + 1], part[:pieces]

@@ -10,8 +10,8 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners.parts.diversity import compute_q_statistic
-from bezierplan.planners.parts.genetic import is_same
-from bezierplan.planners.parts.sorting import sort
+from bezierplan.planners.parts.genetic import copy, is_same
+from bezierplan.planners.parts.sorting import find_largest, sort
 
 
 class Pool(NamedTuple):
@@ -44,18 +44,20 @@ def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> No
 @compile_kernel
 def select(pool: Pool, survivors: int, fill: int) -> None:
     """Move the best of the first `fill` chromosomes to the front, in place; ties in their order."""
-    highest = pool.cost[:survivors].max()
+    highest = find_largest(pool.cost[:survivors])
     # Some that cost no more are enough, so the others need no sorting.
     order, count = np.empty(fill, np.int64), 0
     for i in range(fill):
         order[count] = i
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
-    best, most = order[:survivors], pool.count.max()
-    # No list is longer than `most`, so the rest of the room need not be copied.
-    pool.ones[:survivors, :most] = pool.ones[best, :most]
-    pool.count[:survivors] = pool.count[best]
-    pool.cost[:survivors] = pool.cost[best]
+    best = order[:survivors]
+    # No list is longer than the longest, so the rest of the room need not be copied.
+    ones = pool.ones[best, : find_largest(pool.count)]
+    for k in range(survivors):
+        copy(ones[k], pool.ones[k])
+    copy(pool.count[best], pool.count)
+    copy(pool.cost[best], pool.cost)
 
 
 @allocation_free

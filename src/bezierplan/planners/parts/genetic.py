@@ -10,6 +10,7 @@ import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compile_kernel
 from bezierplan.planners.parts.random_integers import draw_integer
+from bezierplan.planners.parts.sorting import find_first_above
 
 # Maximum number of draws of a bit until the flipped gene is an allele; after that, the gene stays
 # as it is.
@@ -61,9 +62,7 @@ def draw_parents(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> n
     parents = np.empty(draws, np.int64)
     for draw in range(draws):
         # A draw close to 1 can round up to the whole wheel.
-        parents[draw] = min(
-            np.searchsorted(wheel, rng.random() * wheel[-1], side="right"), len(fitness) - 1
-        )
+        parents[draw] = min(find_first_above(wheel, rng.random() * wheel[-1]), len(fitness) - 1)
     return parents
 
 

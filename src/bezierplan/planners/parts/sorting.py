@@ -32,3 +32,30 @@ def sort(indices: np.ndarray, values: np.ndarray) -> None:
             indices[place] = indices[place - 1]
             place -= 1
         indices[place] = i
+
+
+@allocation_free
+def find_first_above(values: np.ndarray, limit: float) -> int:
+    """Find the place of the first of ascending values that lies above a limit, or their number:
+    numpy's `searchsorted` on the right side.
+
+    >>> find_first_above(np.array([1.0, 2.0, 2.0, 3.0]), 2.0)
+    3
+    """
+    low, high = 0, len(values)
+    while low < high:
+        middle = (low + high) // 2
+        if values[middle] > limit:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+@allocation_free
+def find_largest(values: np.ndarray) -> float:
+    """Find the largest of values (n,), n at least 1."""
+    largest = values[0]
+    for value in values[1:]:
+        largest = max(largest, value)
+    return largest
