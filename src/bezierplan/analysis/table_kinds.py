@@ -4,7 +4,7 @@ A study's tables are checked against them at every start of the workflow, so thi
 nothing but what models need.
 """
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
@@ -20,7 +20,6 @@ from bezierplan.schema.model import (
     Metric,
     Model,
     Name,
-    Names,
     Quantity,
     Statistic,
     Where,
@@ -31,12 +30,12 @@ from bezierplan.schema.model import (
     convert_to_list,
 )
 
-PublishedFile = Annotated[
+PublishedFile = build_name_type(
+    "published",
     build_text_type(
         r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"
     ),
-    Names("published"),
-]
+)
 WORDS = ("value", "statistic")
 """Words that distinguish numbers of a table beside columns of the runs table: the entry of
 `values`, and the statistic of it.

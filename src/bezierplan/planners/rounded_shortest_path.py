@@ -623,8 +623,8 @@ def _draw(turns, string):
     for k in range(1, string.count + 2):
         begin, end = string.legs[k]
         for third in range(1, 4):
+            share = third / 3
             for axis in range(2):
-                share = third / 3
                 points[3 * pieces + third, axis] = begin[axis] + (end[axis] - begin[axis]) * share
         part[pieces] = 2 * k
         pieces += 1

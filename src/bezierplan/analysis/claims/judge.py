@@ -138,13 +138,13 @@ def _describe_verdict(
         entry.finding.chance_known for entry in deciding if entry.mark_family == "?"
     ):
         verdict = "depends"
-    own = sentences.note_own_criterion(claim, verdict)
+    criterion = sentences.note_own_criterion(claim, verdict)
     return decisive.finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(entry.mark == '+' for entry in deciding)} of {len(deciding)}",
         "counted": decisive.comparison.counted,
         "p_family": decisive.p_family,
-        "reason": sentences.join_notes(own, _write_reason(decisive), claim.note),
+        "reason": sentences.join_notes(criterion, _write_reason(decisive), claim.note),
     }
 
 
