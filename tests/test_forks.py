@@ -196,8 +196,6 @@ def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
     told = tmp_path / "told"
     job = """
 import os, time
-from bezierplan.running.jobs.log import end_with_parent
-end_with_parent()
 open(snakemake, "w").write(str(os.getpid()))
 time.sleep(600)
 """

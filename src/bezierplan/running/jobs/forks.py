@@ -288,6 +288,7 @@ def run(parent: socket.socket) -> None:
     """Run, in a child, the script that a socket brings, and end the process. An exception ends it
     as it would end an interpreter.
     """
+    end_with_parent()
     # The process that forks has handlers of its own; a script needs those of any process.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
