@@ -180,13 +180,14 @@ def _draw_legend(figure: Figure, names: Mapping[Any, str]) -> None:
 
 def _fit_height(figure: Figure) -> None:
     """Cut empty room above the panels, and between them and the legend."""
+    layout = figure.get_layout_engine()
     for _ in range(_ROUNDS):
-        figure.draw_without_rendering()
+        layout.execute(figure)
         boxes = [axes.get_tightbbox() for axes in figure.axes]
         floor = max([legend.get_window_extent().y1 for legend in figure.legends], default=0.0)
         empty = figure.bbox.height - max(box.y1 for box in boxes) + min(box.y0 for box in boxes)
         figure.set_figheight(figure.get_figheight() - (empty - floor) / figure.dpi + 0.1)
-    figure.draw_without_rendering()
+    layout.execute(figure)
     # Laid out once: each of the three files would do it again.
     figure.set_layout_engine(None)
 

@@ -3,6 +3,7 @@ the same cells.
 """
 
 import itertools
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import PurePath
 
@@ -119,11 +120,12 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
         and pd.api.types.is_bool_dtype(metric_runs[check.metric])
     )
     comparison_list = []
-    for _, rows in _split(runs, every):
-        unit_tables = {name: _average_units(check, part) for name, part in _split(rows, pool)}
-        # Published numbers are found by the places of the runs, each once.
-        places = _split(rows[keys].drop_duplicates(), pool)
-        conditions = [part.to_dict("records") for _, part in places]
+    # Published numbers are found by the places of the runs, each once.
+    places = _split(runs[keys].drop_duplicates(), every)
+    for (_, rows), (_, own) in zip(_split(runs, every), places, strict=True):
+        units = {name: _average_units(check, part) for name, part in _split(rows, pool)}
+        conditions = [part.to_dict("records") for _, part in _split(own, pool)]
+        successes = _count_successes(check, rows)
         compared = list(check.list_cells(rows))
         printed_cells = {
             cell: [
@@ -138,10 +140,9 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
         }
         pooled = rows.groupby(column or "method")["condition"].nunique().max()
         for terms, cells in compared:
-            # A cell without runs becomes a column of NaN, which `effects.explain_too_few` names.
             strata = {
-                key: effects.mark_events(check, table.reindex(columns=cells).to_numpy())
-                for key, table in unit_tables.items()
+                name: effects.mark_events(check, np.array([means[cell] for cell in cells]).T)
+                for name, means in units.items()
             }
             numbers, number_of_runs = average_printed(
                 check, list(zip(*(printed_cells[cell] for cell in cells)))
@@ -160,7 +161,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=boolean,
                     paired=paired,
-                    note=_note_success_rates(check, rows, cells),
+                    note=_note_success_rates(successes, cells),
                     conditions=int(pooled),
                 )
             )
@@ -257,30 +258,37 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
         yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
 
 
-def _average_units(check: OfRuns, rows: pd.DataFrame) -> pd.DataFrame:
-    """Average the values of each unit (row) in each cell (column); a run that counts as failed
-    makes its unit fail.
+def _average_units(check: OfRuns, rows: pd.DataFrame) -> dict[str, np.ndarray]:
+    """Average the values of each unit in each cell; a run that counts as failed makes its unit
+    fail. A cell without runs has NaN alone, which `effects.explain_too_few` names.
     """
     # A check without groups has one cell, whose name is empty.
     if check.cells is None:
-        return rows.groupby(check.replicate)["value"].mean().to_frame("")
-    return rows.groupby([check.replicate, check.cells])["value"].mean().unstack(check.cells)
+        return {"": rows.groupby(check.replicate)["value"].mean().to_numpy()}
+    means = rows.groupby([check.replicate, check.cells])["value"].mean().unstack(check.cells)
+    return defaultdict(lambda: np.full(len(means), np.nan), zip(means, means.to_numpy().T))
 
 
-def _note_success_rates(check: OfRuns, rows: pd.DataFrame, cells: list) -> str:
+def _count_successes(check: OfRuns, rows: pd.DataFrame) -> dict[str, list[int]]:
+    """Count in each cell the runs that succeed and those that fail; empty if a check does not
+    compare successes alone.
+    """
+    feasible_only = metrics.METRICS[check.metric].feasible_only
+    if check.cells is None or check.failures != "drop" or not feasible_only:
+        return {}
+    counts = rows["value"].isna().groupby(rows[check.cells]).agg(["size", "sum"])
+    return {cell: [runs - failed, failed] for cell, runs, failed in counts.itertuples()}
+
+
+def _note_success_rates(successes: dict[str, list[int]], cells: list) -> str:
     """Return a note if two groups are compared on their successful runs but differ in success rate
     (Fisher's exact test); otherwise an empty text.
     """
-    if (
-        len(cells) != 2
-        or check.failures != "drop"
-        or not metrics.METRICS[check.metric].feasible_only
-    ):
+    if len(cells) != 2 or not successes:
         return ""
-    values = [rows.loc[rows[check.cells] == cell, "value"] for cell in cells]
-    counts = [[each.notna().sum(), each.isna().sum()] for each in values]
     from scipy import stats
 
+    counts = [successes.get(cell, [0, 0]) for cell in cells]
     return (
         "compared on successes alone, which are of different number"
         if stats.fisher_exact(counts).pvalue < effects.ALPHA
