@@ -3,8 +3,9 @@ the same cells.
 """
 
 import itertools
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import PurePath
 
 import numpy as np
@@ -121,11 +122,12 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     )
     comparison_list = []
     # Published numbers are found by the places of the runs, each once.
-    places = _split(runs[keys].drop_duplicates(), every)
-    for (_, rows), (_, own) in zip(_split(runs, every), places, strict=True):
-        units = {name: _average_units(check, part) for name, part in _split(rows, pool)}
-        conditions = [part.to_dict("records") for _, part in _split(own, pool)]
-        successes = _count_successes(check, rows)
+    places = runs[keys].drop_duplicates(ignore_index=True)
+    records = places.to_dict("records")
+    for (_, rows), (_, own) in zip(_split(runs, every), _split(places, every), strict=True):
+        units = _average_units(check, rows)
+        conditions = [[records[place] for place in part.index] for _, part in _split(own, pool)]
+        outcomes = _count_outcomes(check, rows)
         compared = list(check.list_cells(rows))
         printed_cells = {
             cell: [
@@ -161,7 +163,7 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
                     paper_units=number_of_runs or material.study.repeats.get(check.experiments[0]),
                     boolean=boolean,
                     paired=paired,
-                    note=_note_success_rates(successes, cells),
+                    note=_note_success_rates(outcomes, cells),
                     conditions=int(pooled),
                 )
             )
@@ -258,37 +260,41 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
         yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
 
 
-def _average_units(check: OfRuns, rows: pd.DataFrame) -> dict[str, np.ndarray]:
-    """Average the values of each unit in each cell; a run that counts as failed makes its unit
-    fail. A cell without runs has NaN alone, which `effects.explain_too_few` names.
+def _average_units(check: OfRuns, rows: pd.DataFrame) -> dict[str, dict[str, np.ndarray]]:
+    """Average the values of each unit: by the name of what is pooled, then by cell. A run that
+    counts as failed makes its unit fail. A cell without runs has NaN alone, which
+    `effects.explain_too_few` names.
     """
+    keys = [*check.pool, check.replicate, *filter(None, [check.cells])]
+    means = rows.groupby(keys, dropna=False)["value"].mean()
     # A check without groups has one cell, whose name is empty.
-    if check.cells is None:
-        return {"": rows.groupby(check.replicate)["value"].mean().to_numpy()}
-    means = rows.groupby([check.replicate, check.cells])["value"].mean().unstack(check.cells)
-    return defaultdict(lambda: np.full(len(means), np.nan), zip(means, means.to_numpy().T))
+    table = means.unstack(check.cells) if check.cells else means.to_frame("")
+    return {
+        name: defaultdict(partial(np.full, len(part), np.nan), zip(part, part.to_numpy().T))
+        for name, part in _split(table, check.pool)
+    }
 
 
-def _count_successes(check: OfRuns, rows: pd.DataFrame) -> dict[str, list[int]]:
-    """Count in each cell the runs that succeed and those that fail; empty if a check does not
-    compare successes alone.
+def _count_outcomes(check: OfRuns, rows: pd.DataFrame) -> list[Counter]:
+    """Count by cell the runs that succeed, and those that fail; nothing if a check does not compare
+    successes alone.
     """
     feasible_only = metrics.METRICS[check.metric].feasible_only
     if check.cells is None or check.failures != "drop" or not feasible_only:
-        return {}
-    counts = rows["value"].isna().groupby(rows[check.cells]).agg(["size", "sum"])
-    return {cell: [runs - failed, failed] for cell, runs, failed in counts.itertuples()}
+        return []
+    failed = rows["value"].isna()
+    return [Counter(rows.loc[each, check.cells]) for each in (~failed, failed)]
 
 
-def _note_success_rates(successes: dict[str, list[int]], cells: list) -> str:
+def _note_success_rates(outcomes: list[Counter], cells: list) -> str:
     """Return a note if two groups are compared on their successful runs but differ in success rate
     (Fisher's exact test); otherwise an empty text.
     """
-    if len(cells) != 2 or not successes:
+    if len(cells) != 2 or not outcomes:
         return ""
     from scipy import stats
 
-    counts = [successes.get(cell, [0, 0]) for cell in cells]
+    counts = [[count[cell] for count in outcomes] for cell in cells]
     return (
         "compared on successes alone, which are of different number"
         if stats.fisher_exact(counts).pvalue < effects.ALPHA
