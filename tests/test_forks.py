@@ -192,18 +192,40 @@ def test_large_object_of_a_script_that_does_not_read_it(started):
     assert started.run_in_fork("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
 
 
-def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
-    told = tmp_path / "told"
-    job = """
+LONG = """
 import os, time
-open(snakemake, "w").write(str(os.getpid()))
+open({told!r}, "w").write(str(os.getpid()))
 time.sleep(600)
 """
-    workflow = (
-        f"from bezierplan.running.jobs.forks import Forks; Forks({sys.executable!r}, "
-        f"print).run_in_fork('long.py', {job!r}, {str(told)!r})"
-    )
-    with subprocess.Popen([sys.executable, "-c", workflow]) as process:
+IN_A_FORK = """
+import sys
+from bezierplan.running.jobs.forks import Forks
+Forks(sys.executable, print).run_in_fork("long.py", {job!r}, None)
+"""
+# As Snakemake starts a script that has an environment of its own.
+IN_AN_INTERPRETER = """
+import subprocess, sys
+subprocess.run([sys.executable, "-c", {job!r}])
+"""
+RUN_JOB = """
+from types import SimpleNamespace
+from snakemake.iocontainers import OutputFiles
+from bezierplan.running.jobs import log
+output = OutputFiles(fromdict={{"one": {told!r} + ".csv"}})
+with log.run_job(SimpleNamespace(log=[{told!r} + ".log"], input=[], output=output)):
+    exec({job!r})
+"""
+
+
+@pytest.mark.parametrize(
+    ("started", "job"),
+    [(IN_A_FORK, LONG), (IN_AN_INTERPRETER, RUN_JOB)],
+    ids=["fork", "interpreter"],
+)
+def test_jobs_end_with_a_workflow_that_is_killed(tmp_path, started, job):
+    told = tmp_path / "told"
+    work = job.format(told=str(told), job=LONG.format(told=str(told)))
+    with subprocess.Popen([sys.executable, "-c", started.format(job=work)]) as process:
         while not (told.exists() and told.read_text()):
             assert process.poll() is None
             time.sleep(0.05)

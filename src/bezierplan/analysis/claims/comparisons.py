@@ -124,9 +124,9 @@ def build_comparisons(check: OfRuns, claim: Claim, material: Material) -> list[C
     # Published numbers are found by the places of the runs, each once.
     places = runs[keys].drop_duplicates(ignore_index=True)
     records = places.to_dict("records")
-    for (_, rows), (_, own) in zip(_split(runs, every), _split(places, every), strict=True):
+    for (_, rows), (_, shown) in zip(_split(runs, every), _split(places, every), strict=True):
         units = _average_units(check, rows)
-        conditions = [[records[place] for place in part.index] for _, part in _split(own, pool)]
+        conditions = [[records[place] for place in part.index] for _, part in _split(shown, pool)]
         outcomes = _count_outcomes(check, rows)
         compared = list(check.list_cells(rows))
         printed_cells = {
@@ -261,8 +261,8 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
 
 
 def _average_units(check: OfRuns, rows: pd.DataFrame) -> dict[str, dict[str, np.ndarray]]:
-    """Average the values of each unit: by the name of what is pooled, then by cell. A run that
-    counts as failed makes its unit fail. A cell without runs has NaN alone, which
+    """Average the values of each unit (units,): by the name of what is pooled, then by cell. A run
+    that counts as failed makes its unit fail. A cell without runs has NaN alone, which
     `effects.explain_too_few` names.
     """
     keys = [*check.pool, check.replicate, *filter(None, [check.cells])]
